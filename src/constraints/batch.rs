@@ -1,0 +1,251 @@
+//! All constraints of one type in flat arrays.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::{Constraint, Rows, Stencil, TypeInfo};
+
+/// All constraints of one type. A *slot* is a constraint's place in the batch; removing constraints moves the later ones
+/// down, so slots change where ids do not.
+pub(crate) trait Batch: Send + Sync {
+    /// What is known of the type.
+    fn info(&self) -> &'static TypeInfo;
+
+    /// The number of slots.
+    fn len(&self) -> usize;
+
+    /// Appends a constraint on the points `indices`, at rest where `points` are now.
+    fn push(&mut self, points: &[DVec3], indices: &[u32]);
+
+    /// Drops the slots where `keep` is false. `keep` has one entry per slot.
+    fn retain(&mut self, keep: &[bool]);
+
+    /// The point indices of a slot.
+    fn indices(&self, slot: usize) -> &[u32];
+
+    /// The scalars in force of a slot.
+    fn scalars(&self, slot: usize) -> &[f64];
+
+    /// Replaces the scalars of a slot; they were checked. Returns true if the rows or the measure changed with them.
+    fn set_scalars(&mut self, slot: usize, scalars: &[f64]) -> bool;
+
+    /// The factor on the user's weight.
+    fn measure(&self, slot: usize) -> f64;
+
+    /// The row coefficients of a slot, row by row. Empty for centred types.
+    fn rows(&self, slot: usize) -> &[f64];
+
+    /// The position of the first target of a slot in the batch's targets; for `slot == len()`, their number.
+    fn target_offset(&self, slot: usize) -> usize;
+
+    /// Writes the projections of `slots` into `targets`, which starts at the first slot's first target.
+    fn project(&self, slots: Range<usize>, points: &[DVec3], targets: &mut [DVec3]);
+
+    /// `Σ stiffness[i] ‖A x − p‖²` over the constraints of `slots`, `p` being `targets` as `project` wrote them and
+    /// `stiffness[0]` belonging to the first slot.
+    fn squared_residual(&self, slots: Range<usize>, points: &[DVec3], targets: &[DVec3], stiffness: &[f64]) -> f64;
+
+    /// The violation of a slot, in the type's unit.
+    fn violation(&self, slot: usize, points: &[DVec3]) -> f64;
+
+    /// True if the rest state of a slot is degenerate.
+    fn is_degenerate(&self, slot: usize) -> bool;
+
+    /// A copy of the whole batch.
+    fn clone_box(&self) -> Box<dyn Batch>;
+}
+
+/// Lists of one kind behind each other. A list that is replaced by one of another length moves to the end.
+#[derive(Clone)]
+struct Lists<V> {
+    spans: Vec<(usize, usize)>,
+    values: Vec<V>,
+    /// How many values no list uses any more.
+    unused: usize,
+}
+
+impl<V: Copy> Lists<V> {
+    fn new() -> Self {
+        Self { spans: Vec::new(), values: Vec::new(), unused: 0 }
+    }
+
+    fn get(&self, i: usize) -> &[V] {
+        &self.values[self.spans[i].0..self.spans[i].1]
+    }
+
+    /// Where list `i` begins; for the number of lists, where the next one will.
+    fn start(&self, i: usize) -> usize {
+        self.spans.get(i).map_or(self.values.len(), |span| span.0)
+    }
+
+    /// Appends a list, written by `append` to the end of the values.
+    fn push_with<R>(&mut self, append: impl FnOnce(&mut Vec<V>) -> R) -> R {
+        let start = self.values.len();
+        let result = append(&mut self.values);
+        self.spans.push((start, self.values.len()));
+        result
+    }
+
+    fn replace(&mut self, i: usize, list: &[V]) {
+        let (start, end) = self.spans[i];
+        if list.len() == end - start {
+            self.values[start..end].copy_from_slice(list);
+            return;
+        }
+        self.unused += end - start;
+        self.spans[i] = (self.values.len(), self.values.len() + list.len());
+        self.values.extend_from_slice(list);
+        if self.unused > self.values.len() / 2 {
+            self.retain(&vec![true; self.spans.len()]);
+        }
+    }
+
+    fn retain(&mut self, keep: &[bool]) {
+        let mut kept = Self::new();
+        for i in (0..self.spans.len()).filter(|&i| keep[i]) {
+            kept.push_with(|values| values.extend_from_slice(self.get(i)));
+        }
+        *self = kept;
+    }
+}
+
+/// The batch of the type `T`.
+#[derive(Clone)]
+pub(super) struct TypedBatch<T> {
+    rest: Vec<T>,
+    indices: Lists<u32>,
+    scalars: Lists<f64>,
+    /// `row_count * k` per slot, row by row; nothing for centred types.
+    coefficients: Vec<f64>,
+}
+
+impl<T: Constraint> TypedBatch<T> {
+    pub(super) fn new_box() -> Box<dyn Batch> {
+        Box::new(Self { rest: Vec::new(), indices: Lists::new(), scalars: Lists::new(), coefficients: Vec::new() })
+    }
+
+    fn stencil<'a>(&'a self, slot: usize, points: &'a [DVec3]) -> Stencil<'a> {
+        match T::INFO.rows {
+            Rows::Centred => Stencil::centred(points, self.indices.get(slot)),
+            Rows::Linear(_) => Stencil::absolute(points, self.indices.get(slot)),
+        }
+    }
+
+    /// The part of `coefficients` that belongs to `slot`.
+    fn coefficient_range(&self, slot: usize) -> Range<usize> {
+        match T::INFO.rows {
+            Rows::Centred => 0..0,
+            Rows::Linear(row_count) => row_count * self.indices.start(slot)..row_count * self.indices.start(slot + 1),
+        }
+    }
+
+    fn computed_rows(&self, slot: usize) -> Vec<f64> {
+        let mut coefficients = vec![0.0; self.coefficient_range(slot).len()];
+        if !coefficients.is_empty() {
+            self.rest[slot].rows(self.scalars.get(slot), &mut coefficients);
+        }
+        coefficients
+    }
+}
+
+impl<T: Constraint> Batch for TypedBatch<T> {
+    fn info(&self) -> &'static TypeInfo {
+        &T::INFO
+    }
+
+    fn len(&self) -> usize {
+        self.rest.len()
+    }
+
+    fn push(&mut self, points: &[DVec3], indices: &[u32]) {
+        let stencil = match T::INFO.rows {
+            Rows::Centred => Stencil::centred(points, indices),
+            Rows::Linear(_) => Stencil::absolute(points, indices),
+        };
+        self.rest.push(self.scalars.push_with(|scalars| T::at_rest(stencil, scalars)));
+        self.indices.push_with(|all| all.extend_from_slice(indices));
+        self.coefficients.extend(self.computed_rows(self.rest.len() - 1));
+    }
+
+    fn retain(&mut self, keep: &[bool]) {
+        let kept = (0..self.len()).filter(|&slot| keep[slot]);
+        self.coefficients = kept.flat_map(|slot| self.coefficients[self.coefficient_range(slot)].to_vec()).collect();
+        let mut flags = keep.iter();
+        self.rest.retain(|_| flags.next().copied().unwrap_or(true));
+        self.indices.retain(keep);
+        self.scalars.retain(keep);
+    }
+
+    fn indices(&self, slot: usize) -> &[u32] {
+        self.indices.get(slot)
+    }
+
+    fn scalars(&self, slot: usize) -> &[f64] {
+        self.scalars.get(slot)
+    }
+
+    fn set_scalars(&mut self, slot: usize, scalars: &[f64]) -> bool {
+        let measure = self.measure(slot);
+        self.scalars.replace(slot, scalars);
+        let (rows, range) = (self.computed_rows(slot), self.coefficient_range(slot));
+        let changed = self.coefficients[range.clone()] != rows || self.measure(slot) != measure;
+        self.coefficients[range].copy_from_slice(&rows);
+        changed
+    }
+
+    fn measure(&self, slot: usize) -> f64 {
+        self.rest[slot].measure(self.scalars.get(slot))
+    }
+
+    fn rows(&self, slot: usize) -> &[f64] {
+        &self.coefficients[self.coefficient_range(slot)]
+    }
+
+    fn target_offset(&self, slot: usize) -> usize {
+        match T::INFO.rows {
+            Rows::Centred => self.indices.start(slot),
+            Rows::Linear(row_count) => row_count * slot,
+        }
+    }
+
+    fn project(&self, slots: Range<usize>, points: &[DVec3], targets: &mut [DVec3]) {
+        let first = self.target_offset(slots.start);
+        for slot in slots {
+            let (start, end) = (self.target_offset(slot) - first, self.target_offset(slot + 1) - first);
+            let x = self.stencil(slot, points);
+            self.rest[slot].project(self.scalars.get(slot), x, &mut targets[start..end]);
+        }
+    }
+
+    fn squared_residual(&self, slots: Range<usize>, points: &[DVec3], targets: &[DVec3], stiffness: &[f64]) -> f64 {
+        let first = self.target_offset(slots.start);
+        let mut sum = 0.0;
+        for (slot, stiffness) in slots.zip(stiffness) {
+            let x = self.stencil(slot, points);
+            let targets = &targets[self.target_offset(slot) - first..self.target_offset(slot + 1) - first];
+            let squared: f64 = match T::INFO.rows {
+                Rows::Centred => x.iter().zip(targets).map(|(point, &target)| (point - target).length_squared()).sum(),
+                Rows::Linear(_) => {
+                    let rows = self.rows(slot).chunks_exact(x.len());
+                    let image = |row: &[f64]| row.iter().zip(x.iter()).map(|(&a, point)| a * point).sum::<DVec3>();
+                    rows.zip(targets).map(|(row, &target)| (image(row) - target).length_squared()).sum()
+                }
+            };
+            sum += stiffness * squared;
+        }
+        sum
+    }
+
+    fn violation(&self, slot: usize, points: &[DVec3]) -> f64 {
+        self.rest[slot].violation(self.scalars.get(slot), self.stencil(slot, points))
+    }
+
+    fn is_degenerate(&self, slot: usize) -> bool {
+        self.rest[slot].is_degenerate(self.scalars.get(slot))
+    }
+
+    fn clone_box(&self) -> Box<dyn Batch> {
+        Box::new(self.clone())
+    }
+}

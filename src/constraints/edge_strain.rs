@@ -1,0 +1,82 @@
+//! EdgeStrain: an edge whose length stays within a range of its rest length.
+//!
+//! Set: edges `e = x₁ − x₀` with `rmin ≤ ‖e‖/L ≤ rmax`. Row: `e/L`. Projection: `clamp(‖e‖/L, rmin, rmax) e/‖e‖`; nearest.
+//! An edge of no length has no direction: it is given +x. Measure: the rest length `L₀` at creation (`L` where `L₀ = 0`),
+//! whatever `L` is edited to. Scalars: `L` in model units (default `L₀`), `range_min` and `range_max` as ratios (1, 1).
+//! Violation: the distance of `‖e‖` from `[rmin L, rmax L]` in model units. Degenerate where `L₀ = 0` and no length was
+//! edited in: its row is then zero. Sources: Bouaziz et al. 2014, section 5.1; Deuss et al. 2015, Table 1.
+
+use glam::DVec3;
+
+use super::{Constraint, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo, check_positive, check_range};
+use crate::error::Result;
+
+/// One EdgeStrain constraint.
+#[derive(Clone)]
+pub struct EdgeStrain {
+    /// `L₀`, the length at creation.
+    rest_length: f64,
+}
+
+impl Constraint for EdgeStrain {
+    const INFO: TypeInfo = TypeInfo {
+        name: "EdgeStrain",
+        help: "keeps the length of an edge within a range of its rest length",
+        least_indices: 2,
+        greatest_indices: Some(2),
+        index_names: &["start", "end"],
+        scalars: Scalars::Named(&[
+            Scalar { name: "length", default: None },
+            Scalar { name: "range_min", default: Some(1.0) },
+            Scalar { name: "range_max", default: Some(1.0) },
+        ]),
+        rows: Rows::Linear(1),
+        projection: Projection::Nearest,
+        violation_unit: "model units",
+        energy_scale_power: 1,
+        edited_as: None,
+    };
+
+    fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
+        let [start, end] = x.array();
+        let rest_length = start.distance(end);
+        scalars.extend([rest_length, 1.0, 1.0]);
+        Self { rest_length }
+    }
+
+    fn check_scalars(scalars: &[f64]) -> Result<()> {
+        check_positive("length", scalars[0])?;
+        check_range("range", scalars[1], scalars[2])
+    }
+
+    fn measure(&self, scalars: &[f64]) -> f64 {
+        if self.rest_length > 0.0 { self.rest_length } else { scalars[0] }
+    }
+
+    fn rows(&self, scalars: &[f64], coefficients: &mut [f64]) {
+        if scalars[0] > 0.0 {
+            coefficients.copy_from_slice(&[-1.0 / scalars[0], 1.0 / scalars[0]]);
+        }
+    }
+
+    fn project(&self, scalars: &[f64], x: Stencil<'_>, targets: &mut [DVec3]) {
+        let [length, range_min, range_max] = scalars else { return };
+        let [start, end] = x.array();
+        let edge = end - start;
+        targets[0] = if *length > 0.0 {
+            edge.try_normalize().unwrap_or(DVec3::X) * (edge.length() / length).clamp(*range_min, *range_max)
+        } else {
+            DVec3::ZERO
+        };
+    }
+
+    fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {
+        let [start, end] = x.array();
+        let (length, strain) = (scalars[0], start.distance(end) / scalars[0]);
+        if length > 0.0 { length * (strain - strain.clamp(scalars[1], scalars[2])).abs() } else { 0.0 }
+    }
+
+    fn is_degenerate(&self, scalars: &[f64]) -> bool {
+        scalars[0] <= 0.0
+    }
+}

@@ -1,0 +1,1 @@
+//! The laws that every type keeps, checked over the whole registry.

@@ -1,0 +1,258 @@
+//! The constraint types: one file each, and one line each in the registry at the end of this file.
+//!
+//! A constraint of `k` points has rows `A` (the same scalar coefficients for x, y and z) and a projection `P`. It adds
+//! `½ w m ‖A x − P(x)‖²` to the energy, `w` being the user's weight and `m` the type's measure (a rest length, area or
+//! volume; 1 for most). A type knows neither weights nor ids nor the solver: those belong to [`ConstraintSet`] and
+//! `solver`. All constraints of one type lie in one [`Batch`] of flat arrays, so an iteration makes one dynamic call
+//! per chunk of a type and the inner loop is plain code over contiguous data.
+//!
+//! To add a type: write its file, with one struct that implements [`Constraint`], and add its line to the registry.
+
+mod batch;
+#[cfg(test)]
+mod laws;
+mod set;
+mod stencil;
+
+pub(crate) use batch::Batch;
+pub use set::{ConstraintId, ConstraintSet, NewConstraints};
+pub use stencil::Stencil;
+
+use crate::error::{Error, Result, Status};
+use batch::TypedBatch;
+
+/// The rows `A` of a type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rows {
+    /// `k` rows `x_i − x̄`, `x̄` the mean of the constraint's points. Only named, never stored: the solver assembles them
+    /// in O(k). [`Stencil`] then hands out points relative to their mean.
+    Centred,
+    /// So many rows with coefficients of their own, at most as many as points.
+    Linear(usize),
+}
+
+/// What a type promises of its projection; the law suite holds it to that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Projection {
+    /// The nearest element of the set: idempotent, feasible, no feasible point is nearer. Plain iterations never raise
+    /// the energy.
+    Nearest,
+    /// An element of the set, not always the nearest.
+    Feasible,
+    /// A step towards the set: the violation falls.
+    Approximate,
+}
+
+/// The number of scalars that one constraint takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scalars {
+    /// The constraint cannot be edited.
+    None,
+    /// One number per entry.
+    Named(&'static [Scalar]),
+    /// `m ≥ 1` shapes of the constraint's `k` points each, as `3 k m` coordinates.
+    Shapes,
+}
+
+/// One scalar of a type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scalar {
+    /// Its name, with the unit as suffix unless it is in model units or has none.
+    pub name: &'static str,
+    /// What it is before the first edit; `None` where the points at creation decide.
+    pub default: Option<f64>,
+}
+
+/// What the world outside needs to know of a type. Everything that shows types to people reads it from here.
+#[derive(Clone, Copy, Debug)]
+pub struct TypeInfo {
+    /// The name in signatures.
+    pub name: &'static str,
+    /// One line for people.
+    pub help: &'static str,
+    /// The least number of point indices.
+    pub least_indices: usize,
+    /// The greatest number of point indices; `None`: any number.
+    pub greatest_indices: Option<usize>,
+    /// What each index means, in order; the last entry stands for all that follow.
+    pub index_names: &'static [&'static str],
+    /// The scalars of an edit.
+    pub scalars: Scalars,
+    /// The rows.
+    pub rows: Rows,
+    /// What the projection promises.
+    pub projection: Projection,
+    /// The unit of the violation, such as "model units" or "rad".
+    pub violation_unit: &'static str,
+    /// `p` where scaling the model by `s` (rest state and length scalars included) scales the energy by `s^p`.
+    pub energy_scale_power: i32,
+    /// Another type whose name may be given when a constraint of this one is edited.
+    pub edited_as: Option<&'static str>,
+}
+
+/// One constraint type: the rest state of one constraint, and what the solver asks of it.
+///
+/// `scalars` are always valid for [`Constraint::check_scalars`]. Everything finite that goes in must give finite results,
+/// coincident and collinear points included.
+pub trait Constraint: Clone + Send + Sync + 'static {
+    /// What the world needs to know of this type.
+    const INFO: TypeInfo;
+
+    /// Captures the rest state of `x` and appends the default scalars.
+    fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self;
+
+    /// Refuses scalars out of their domain. Their count and finiteness were checked against `INFO`.
+    ///
+    /// # Errors
+    /// Status `InvalidValue`, with the scalar's name as place.
+    fn check_scalars(_scalars: &[f64]) -> Result<()> {
+        Ok(())
+    }
+
+    /// The factor on the user's weight.
+    fn measure(&self, _scalars: &[f64]) -> f64 {
+        1.0
+    }
+
+    /// Writes the coefficients, row by row (`row_count * k`), into zeroed memory. Not called for centred types.
+    fn rows(&self, _scalars: &[f64], _coefficients: &mut [f64]) {}
+
+    /// Writes the projection of `x`: one target per row.
+    fn project(&self, scalars: &[f64], x: Stencil<'_>, targets: &mut [glam::DVec3]);
+
+    /// How far `x` is from the set, in `INFO.violation_unit`; 0 on the set.
+    fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64;
+
+    /// True where the rest state spans too little to say what the constraint asks for; it then asks for nothing, or for
+    /// less, as the type's docs say.
+    fn is_degenerate(&self, _scalars: &[f64]) -> bool {
+        false
+    }
+}
+
+impl TypeInfo {
+    /// Refuses a number of indices that the type does not take.
+    ///
+    /// # Errors
+    /// Status `InvalidArgumentLength`.
+    pub fn check_index_count(&self, count: usize) -> Result<()> {
+        if count >= self.least_indices && self.greatest_indices.is_none_or(|most| count <= most) {
+            return Ok(());
+        }
+        let expected = match self.greatest_indices {
+            Some(most) if most == self.least_indices => format!("{most}"),
+            Some(most) => format!("{} to {most}", self.least_indices),
+            None => format!("at least {}", self.least_indices),
+        };
+        let reason = format!("expected {expected} for \"{}\", found {count}", self.name);
+        Err(Error::new(Status::InvalidArgumentLength, reason).at("number of indices"))
+    }
+
+    /// Refuses a number of scalars that a constraint of `k` points does not take.
+    ///
+    /// # Errors
+    /// Status `InvalidConstraintType` where the type has none, else `InvalidArgumentLength` or, for no shape at all,
+    /// `InvalidValue`.
+    pub fn check_scalar_count(&self, k: usize, count: usize) -> Result<()> {
+        match self.scalars {
+            Scalars::None => {
+                Err(Error::new(Status::InvalidConstraintType, format!("\"{}\" has no scalars to edit", self.name)))
+            }
+            Scalars::Named(names) if count == names.len() => Ok(()),
+            Scalars::Named(names) => {
+                let list = names.iter().map(|scalar| scalar.name).collect::<Vec<_>>().join(", ");
+                let reason = format!("expected {} for \"{}\" ({list}), found {count}", names.len(), self.name);
+                Err(Error::new(Status::InvalidArgumentLength, reason).at("number of scalars"))
+            }
+            Scalars::Shapes if count == 0 => {
+                let reason = format!("\"{}\" needs at least one shape, found none", self.name);
+                Err(Error::new(Status::InvalidValue, reason).at("scalars"))
+            }
+            Scalars::Shapes if count.is_multiple_of(3 * k) => Ok(()),
+            Scalars::Shapes => {
+                let reason = format!("expected a multiple of {} (x y z per point and shape), found {count}", 3 * k);
+                Err(Error::new(Status::InvalidArgumentLength, reason).at("number of scalars"))
+            }
+        }
+    }
+}
+
+/// The number of a type in [`types`]; stable, new types are appended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TypeIndex(u16);
+
+impl TypeIndex {
+    /// Finds a type by its name in signatures. "AngleConstraint", as the published client's help has it, is "Angle".
+    ///
+    /// # Errors
+    /// Status `InvalidConstraintType`, with the list of names.
+    pub fn named(name: &str) -> Result<Self> {
+        let known = if name == "AngleConstraint" { "Angle" } else { name };
+        match REGISTRY.iter().position(|entry| entry.info.name == known) {
+            Some(index) => Ok(Self(index as u16)),
+            None => {
+                let names = types().map(|info| info.name).collect::<Vec<_>>().join(", ");
+                let reason = format!("\"{name}\" is not one of {names}");
+                Err(Error::new(Status::InvalidConstraintType, reason).at("constraint type"))
+            }
+        }
+    }
+
+    /// What is known of the type.
+    pub fn info(self) -> &'static TypeInfo {
+        REGISTRY[self.0 as usize].info
+    }
+}
+
+/// All types, in the order of their [`TypeIndex`].
+pub fn types() -> impl ExactSizeIterator<Item = &'static TypeInfo> {
+    REGISTRY.iter().map(|entry| entry.info)
+}
+
+struct Entry {
+    info: &'static TypeInfo,
+    new_batch: fn() -> Box<dyn Batch>,
+    /// Refuses scalars outside the type's domain.
+    check_scalars: fn(&[f64]) -> Result<()>,
+}
+
+const fn entry<T: Constraint>() -> Entry {
+    Entry { info: &T::INFO, new_batch: TypedBatch::<T>::new_box, check_scalars: T::check_scalars }
+}
+
+/// Declares the modules and the registry. `cargo fmt` does not see through it: format these files by name.
+macro_rules! registry {
+    ($($module:ident::$Type:ident,)*) => {
+        $(pub mod $module;)*
+        static REGISTRY: &[Entry] = &[$(entry::<$module::$Type>()),*];
+        #[cfg(test)]
+        macro_rules! for_each_type {
+            ($law:ident) => { $($law::<$module::$Type>();)* };
+        }
+        #[cfg(test)]
+        #[allow(unused_imports, reason = "used by the law suite")]
+        use for_each_type;
+    };
+}
+
+registry! {
+    edge_strain::EdgeStrain,
+    closeness::Closeness,
+    plane::Plane,
+}
+
+/// Refuses a number that is not above 0; it was checked to be finite.
+fn check_positive(name: &str, value: f64) -> Result<()> {
+    if value > 0.0 {
+        return Ok(());
+    }
+    Err(Error::new(Status::InvalidValue, format!("expected a number above 0, found {value}")).at(name))
+}
+
+/// Refuses a range `[min, max]` that is empty or begins below 0; both ends were checked to be finite.
+fn check_range(name: &str, min: f64, max: f64) -> Result<()> {
+    if 0.0 <= min && min <= max {
+        return Ok(());
+    }
+    Err(Error::new(Status::InvalidValue, format!("expected 0 <= min <= max, found [{min}, {max}]")).at(name))
+}

@@ -1,0 +1,361 @@
+//! All constraints of a model: ids, weights and the batches of every type.
+
+use glam::DVec3;
+
+use super::{Batch, REGISTRY, TypeIndex, TypeInfo};
+use crate::error::{Error, Result, Status, finite};
+
+/// The number of a constraint: they count up from 0 and are never reused.
+pub type ConstraintId = usize;
+
+/// Where a constraint lies.
+#[derive(Clone, Copy)]
+struct Place {
+    type_index: TypeIndex,
+    slot: u32,
+}
+
+/// The constraints of one type with what the user says of each.
+struct Group {
+    batch: Box<dyn Batch>,
+    ids: Vec<u32>,
+    weights: Vec<f64>,
+    is_removed: Vec<bool>,
+}
+
+/// Constraints of one type that are added in one call.
+#[derive(Clone, Copy, Debug)]
+pub struct NewConstraints<'a> {
+    /// The name of the type.
+    pub type_name: &'a str,
+    /// The point indices of all constraints behind each other.
+    pub indices: &'a [u32],
+    /// The number of indices of each constraint; its length is the number of constraints.
+    pub counts: &'a [usize],
+    /// One weight for all, or one per constraint.
+    pub weights: &'a [f64],
+    /// The scalar sets behind each other.
+    pub scalars: &'a [f64],
+    /// The number of scalars of each set. Empty: the defaults. One: a set for all. Else one set per constraint.
+    pub scalar_counts: &'a [usize],
+}
+
+impl<'a> NewConstraints<'a> {
+    /// The weight of constraint `i`.
+    fn weight(&self, i: usize) -> f64 {
+        if self.weights.len() == 1 { self.weights[0] } else { self.weights[i] }
+    }
+
+    /// Indices and scalars of each constraint; the counts were checked.
+    fn each(self) -> impl Iterator<Item = (&'a [u32], Option<&'a [f64]>)> {
+        let (mut indices, mut scalars) = (self.indices, self.scalars);
+        self.counts.iter().enumerate().map(move |(i, &count)| {
+            let (own, rest) = indices.split_at(count);
+            indices = rest;
+            let set = match self.scalar_counts.len() {
+                0 => None,
+                1 => Some(scalars),
+                _ => {
+                    let (set, rest) = scalars.split_at(self.scalar_counts[i]);
+                    scalars = rest;
+                    Some(set)
+                }
+            };
+            (own, set)
+        })
+    }
+}
+
+/// Refuses `counts` that do not add up to `length`; `name` is the list that they divide.
+fn check_sum(name: &str, counts: &[usize], length: usize) -> Result<()> {
+    let sum = counts.iter().try_fold(0_usize, |sum, &count| sum.checked_add(count));
+    if sum == Some(length) {
+        return Ok(());
+    }
+    let asked = sum.map_or("more than there can be".to_owned(), |sum| sum.to_string());
+    let reason = format!("the counts add up to {asked}, found {length}");
+    Err(Error::new(Status::InvalidArgumentLength, reason).at(name))
+}
+
+/// Refuses a list that has neither one entry nor one per constraint.
+fn check_one_or_each(name: &str, length: usize, constraint_count: usize) -> Result<()> {
+    if length == 1 || length == constraint_count {
+        return Ok(());
+    }
+    let reason = format!("expected 1 or {constraint_count}, found {length}");
+    Err(Error::new(Status::InvalidArgumentLength, reason).at(name))
+}
+
+/// All constraints of a model.
+pub struct ConstraintSet {
+    /// By type index.
+    groups: Vec<Group>,
+    /// By id; `None` once removed.
+    places: Vec<Option<Place>>,
+    /// The number of slots that are removed but not yet dropped.
+    removed_count: usize,
+}
+
+impl Default for ConstraintSet {
+    fn default() -> Self {
+        let group = |new_batch: fn() -> Box<dyn Batch>| Group {
+            batch: new_batch(),
+            ids: Vec::new(),
+            weights: Vec::new(),
+            is_removed: Vec::new(),
+        };
+        Self {
+            groups: REGISTRY.iter().map(|entry| group(entry.new_batch)).collect(),
+            places: Vec::new(),
+            removed_count: 0,
+        }
+    }
+}
+
+impl Clone for ConstraintSet {
+    fn clone(&self) -> Self {
+        let copy = |group: &Group| Group {
+            batch: group.batch.clone_box(),
+            ids: group.ids.clone(),
+            weights: group.weights.clone(),
+            is_removed: group.is_removed.clone(),
+        };
+        Self {
+            groups: self.groups.iter().map(copy).collect(),
+            places: self.places.clone(),
+            removed_count: self.removed_count,
+        }
+    }
+}
+
+impl ConstraintSet {
+    /// The number of ids given out, removed ones included.
+    pub fn id_count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// True if `id` is a constraint that was not removed.
+    pub fn contains(&self, id: ConstraintId) -> bool {
+        self.places.get(id).is_some_and(Option::is_some)
+    }
+
+    /// Adds constraints of one type, at rest where `points` are now, all or none. Their ids follow each other from the
+    /// one returned.
+    ///
+    /// # Errors
+    /// The type is unknown, a count does not fit, an index is out of range, a weight is negative or not finite, a scalar
+    /// is outside its domain. Nothing is added then.
+    pub fn add(&mut self, points: &[DVec3], new: NewConstraints<'_>) -> Result<ConstraintId> {
+        let type_index = TypeIndex::named(new.type_name)?;
+        self.check_new(points.len(), type_index, new)?;
+        let first_id = self.places.len();
+        let group = &mut self.groups[type_index.0 as usize];
+        for (i, (indices, scalars)) in new.each().enumerate() {
+            let slot = group.batch.len();
+            group.batch.push(points, indices);
+            if let Some(scalars) = scalars {
+                group.batch.set_scalars(slot, scalars);
+            }
+            group.ids.push(self.places.len() as u32);
+            group.weights.push(new.weight(i));
+            group.is_removed.push(false);
+            self.places.push(Some(Place { type_index, slot: slot as u32 }));
+        }
+        Ok(first_id)
+    }
+
+    /// Replaces the scalars of a constraint. Returns what the edit changed.
+    ///
+    /// # Errors
+    /// In this order: the type cannot be edited (`InvalidConstraintType`), `id` is no constraint of that type
+    /// (`UnmatchingConstraintId`), the number of scalars does not fit (`InvalidArgumentLength`), a scalar is outside its
+    /// domain (`InvalidValue`). Nothing changes then.
+    pub fn edit(&mut self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<Edited> {
+        let named = TypeIndex::named(type_name)?;
+        if named.info().scalars == super::Scalars::None {
+            named.info().check_scalar_count(1, 0)?;
+        }
+        let place = self.place(id)?;
+        let info = place.type_index.info();
+        if named != place.type_index && info.edited_as != Some(named.info().name) {
+            let reason = format!("constraint {id} is of type \"{}\", not \"{type_name}\"", info.name);
+            return Err(Error::new(Status::UnmatchingConstraintId, reason).at("constraint id"));
+        }
+        let slot = place.slot as usize;
+        let group = &mut self.groups[place.type_index.0 as usize];
+        check_scalars(place.type_index, group.batch.indices(slot).len(), scalars)?;
+        if group.batch.scalars(slot) == scalars {
+            return Ok(Edited::Nothing);
+        }
+        Ok(if group.batch.set_scalars(slot, scalars) { Edited::Rows } else { Edited::Targets })
+    }
+
+    /// Sets the weight of a constraint; returns true if it is another one than before.
+    ///
+    /// # Errors
+    /// The id is no constraint, or the weight is negative or not finite.
+    pub fn set_weight(&mut self, id: ConstraintId, weight: f64) -> Result<bool> {
+        let place = self.place(id)?;
+        check_weight(weight)?;
+        let old = &mut self.groups[place.type_index.0 as usize].weights[place.slot as usize];
+        Ok(std::mem::replace(old, weight) != weight)
+    }
+
+    /// Removes a constraint; its id is never given out again.
+    ///
+    /// # Errors
+    /// The id is no constraint.
+    pub fn remove(&mut self, id: ConstraintId) -> Result<()> {
+        let place = self.place(id)?;
+        self.groups[place.type_index.0 as usize].is_removed[place.slot as usize] = true;
+        self.places[id] = None;
+        self.removed_count += 1;
+        Ok(())
+    }
+
+    /// Drops the slots of removed constraints.
+    pub(crate) fn compact(&mut self) {
+        if self.removed_count == 0 {
+            return;
+        }
+        for group in self.groups.iter_mut().filter(|group| group.is_removed.contains(&true)) {
+            let keep: Vec<bool> = group.is_removed.iter().map(|&is_removed| !is_removed).collect();
+            group.batch.retain(&keep);
+            let mut flags = keep.iter();
+            group.ids.retain(|_| flags.next() == Some(&true));
+            let mut flags = keep.iter();
+            group.weights.retain(|_| flags.next() == Some(&true));
+            group.is_removed = vec![false; group.ids.len()];
+            for (slot, &id) in group.ids.iter().enumerate() {
+                if let Some(place) = &mut self.places[id as usize] {
+                    place.slot = slot as u32;
+                }
+            }
+        }
+        self.removed_count = 0;
+    }
+
+    /// The batches with the weights of their slots (0 for removed ones), in registry order.
+    pub(crate) fn batches(&self) -> impl ExactSizeIterator<Item = (&dyn Batch, &[f64])> {
+        self.groups.iter().map(|group| (&*group.batch, group.weights.as_slice()))
+    }
+
+    /// The type, indices, weight and scalars in force of a constraint; `None` if the id is none.
+    pub fn get(&self, id: ConstraintId) -> Option<ConstraintView<'_>> {
+        let place = (*self.places.get(id)?)?;
+        let (group, slot) = (&self.groups[place.type_index.0 as usize], place.slot as usize);
+        Some(ConstraintView {
+            info: place.type_index.info(),
+            indices: group.batch.indices(slot),
+            weight: group.weights[slot],
+            scalars: group.batch.scalars(slot),
+            is_degenerate: group.batch.is_degenerate(slot),
+        })
+    }
+
+    /// The violation of every id at `points`, each in its type's unit; 0 for removed ones. Length [`Self::id_count`].
+    pub fn violations(&self, points: &[DVec3]) -> Vec<f64> {
+        let violation =
+            |place: &Place| self.groups[place.type_index.0 as usize].batch.violation(place.slot as usize, points);
+        self.places.iter().map(|place| place.as_ref().map_or(0.0, violation)).collect()
+    }
+
+    /// The first constraint that refers to a point at or beyond `point_count`, with that point.
+    pub(crate) fn first_beyond(&self, point_count: usize) -> Option<(ConstraintId, u32)> {
+        let all = (0..self.places.len()).filter_map(|id| Some((id, self.get(id)?)));
+        all.filter_map(|(id, view)| {
+            let most = view.indices.iter().copied().max()?;
+            (most as usize >= point_count).then_some((id, most))
+        })
+        .next()
+    }
+
+    fn place(&self, id: ConstraintId) -> Result<Place> {
+        match self.places.get(id) {
+            Some(Some(place)) => Ok(*place),
+            Some(None) => {
+                let reason = format!("constraint {id} was removed");
+                Err(Error::new(Status::UnmatchingConstraintId, reason).at("constraint id"))
+            }
+            None => {
+                let reason = format!("{id} is none of the {} ids given out", self.places.len());
+                Err(Error::new(Status::UnmatchingConstraintId, reason).at("constraint id"))
+            }
+        }
+    }
+
+    fn check_new(&self, point_count: usize, type_index: TypeIndex, new: NewConstraints<'_>) -> Result<()> {
+        let info = type_index.info();
+        let name_of = |i: usize| format!("constraint {} (\"{}\")", self.places.len() + i, info.name);
+        if u32::try_from(self.places.len() + new.counts.len()).is_err() {
+            return Err(Error::new(Status::TooLarge, "more than 4294967295 constraints"));
+        }
+        for (i, &count) in new.counts.iter().enumerate() {
+            info.check_index_count(count).map_err(|error| error.at(name_of(i)))?;
+        }
+        check_sum("indices", new.counts, new.indices.len())?;
+        check_one_or_each("number of weights", new.weights.len(), new.counts.len())?;
+        match new.scalar_counts {
+            [] => check_sum("scalars", &[], new.scalars.len())?,
+            sets => {
+                check_one_or_each("number of scalar sets", sets.len(), new.counts.len())?;
+                check_sum("scalars", sets, new.scalars.len())?;
+            }
+        }
+        for (i, (indices, scalars)) in new.each().enumerate() {
+            let check = || -> Result<()> {
+                for (j, &index) in indices.iter().enumerate() {
+                    if index as usize >= point_count {
+                        let reason = format!("{index} is out of range for {point_count} points");
+                        return Err(Error::new(Status::IndexOutOfRange, reason).at(format!("indices[{j}]")));
+                    }
+                }
+                check_weight(new.weight(i))?;
+                scalars.map_or(Ok(()), |scalars| check_scalars(type_index, indices.len(), scalars))
+            };
+            check().map_err(|error| error.at(name_of(i)))?;
+        }
+        Ok(())
+    }
+}
+
+/// What an edit changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edited {
+    /// The scalars were those already in force.
+    Nothing,
+    /// The projection; the rows and the measure are as before.
+    Targets,
+    /// The rows or the measure: the system must be factorised again.
+    Rows,
+}
+
+/// One constraint as it stands.
+#[derive(Clone, Copy, Debug)]
+pub struct ConstraintView<'a> {
+    /// The type.
+    pub info: &'static TypeInfo,
+    /// The point indices.
+    pub indices: &'a [u32],
+    /// The user's weight.
+    pub weight: f64,
+    /// The scalars in force.
+    pub scalars: &'a [f64],
+    /// True if its rest state is degenerate.
+    pub is_degenerate: bool,
+}
+
+fn check_weight(weight: f64) -> Result<()> {
+    if finite("weight", weight)? >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::new(Status::InvalidValue, format!("expected at least 0, found {weight}")).at("weight"))
+}
+
+fn check_scalars(type_index: TypeIndex, index_count: usize, scalars: &[f64]) -> Result<()> {
+    type_index.info().check_scalar_count(index_count, scalars.len())?;
+    for (i, &scalar) in scalars.iter().enumerate() {
+        finite(&format!("scalars[{i}]"), scalar)?;
+    }
+    (REGISTRY[type_index.0 as usize].check_scalars)(scalars)
+}

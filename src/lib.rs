@@ -1,0 +1,4 @@
+//! Constraint-based geometry.
+pub mod constraints;
+pub mod error;
+pub mod linalg;

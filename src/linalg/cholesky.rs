@@ -1,0 +1,307 @@
+//! The sparse symmetric positive definite system of the global step: pattern, ordering, factor, solve.
+//!
+//! The only file that knows faer. The matrix is scaled to a unit diagonal before it is factorised, so a pivot can be
+//! judged by its own size whatever the weights are.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::linalg::cholesky::factorize_symbolic_cholesky;
+use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, Mat, Par, Side};
+use glam::DVec3;
+
+use crate::error::{Error, Result, Status};
+
+/// A pivot of the unit-diagonal matrix at or below this is round-off: the row depends on the ones before it. Factoring
+/// perturbs pivots by a few hundred units in the last place of 1 at most.
+const SINGULAR_PIVOT: f64 = 1e-13;
+
+/// What faer puts in the place of such a pivot. Entries of the factor of a unit-diagonal matrix are at most 1, so the
+/// root of this one stands out.
+const MARKED_PIVOT: f64 = 1e40;
+
+/// The lower triangle of a symmetric matrix in compressed columns, assembled again and again into the same pattern.
+#[derive(Clone, Debug)]
+pub struct SymmetricMatrix {
+    dimension: usize,
+    column_starts: Vec<u32>,
+    /// Ascending within a column; the diagonal entry first.
+    rows: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl SymmetricMatrix {
+    /// The zero matrix with an entry wherever `visit` reports one. `visit` calls its argument with `(i, j)` for every
+    /// entry of either triangle, repeated ones included; the diagonal is always there. It is called twice and must
+    /// report the same entries.
+    ///
+    /// # Errors
+    /// Status `TooLarge` where 32-bit indices do not suffice.
+    pub fn with_pattern(dimension: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self> {
+        let mut counts = vec![1_usize; dimension];
+        visit(&mut |i, j| counts[i.min(j) as usize] += usize::from(i != j));
+        let mut next: Vec<usize> = Vec::with_capacity(dimension);
+        let mut total = 0_usize;
+        for &count in &counts {
+            next.push(total);
+            total += count;
+        }
+        if u32::try_from(total).is_err() || u32::try_from(dimension).is_err() {
+            return Err(Error::new(Status::TooLarge, format!("{total} matrix entries exceed 32-bit indices")));
+        }
+        let mut rows = vec![0_u32; total];
+        let starts = next.clone();
+        for (j, place) in next.iter_mut().enumerate() {
+            rows[*place] = j as u32;
+            *place += 1;
+        }
+        visit(&mut |i, j| {
+            if i != j {
+                let column = i.min(j) as usize;
+                rows[next[column]] = i.max(j);
+                next[column] += 1;
+            }
+        });
+        // Sort each column and close the gaps that repeated entries leave.
+        let mut column_starts = Vec::with_capacity(dimension + 1);
+        column_starts.push(0);
+        let mut length = 0;
+        for (&start, &end) in starts.iter().zip(&next) {
+            rows[start..end].sort_unstable();
+            let column_start = length;
+            for k in start..end {
+                if length == column_start || rows[length - 1] != rows[k] {
+                    rows[length] = rows[k];
+                    length += 1;
+                }
+            }
+            column_starts.push(length as u32);
+        }
+        rows.truncate(length);
+        rows.shrink_to_fit();
+        Ok(Self { dimension, column_starts, values: vec![0.0; rows.len()], rows })
+    }
+
+    /// The number of rows.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// Sets every entry to 0 and keeps the pattern.
+    pub fn clear(&mut self) {
+        self.values.fill(0.0);
+    }
+
+    /// Adds `value` to entry `(i, j)` and so to `(j, i)`. False if the pattern has no such entry.
+    #[must_use]
+    pub fn add(&mut self, i: u32, j: u32, value: f64) -> bool {
+        let (row, column) = (i.max(j), i.min(j) as usize);
+        let (start, end) = (self.column_starts[column] as usize, self.column_starts[column + 1] as usize);
+        match self.rows[start..end].binary_search(&row) {
+            Ok(k) => {
+                self.values[start + k] += value;
+                true
+            }
+            Err(_) => false,
+        }
+    }
+
+    /// The diagonal entry `i`.
+    pub fn diagonal(&self, i: usize) -> f64 {
+        self.values[self.column_starts[i] as usize]
+    }
+
+    /// A mutable reference to the diagonal entry `i`.
+    pub fn diagonal_mut(&mut self, i: usize) -> &mut f64 {
+        &mut self.values[self.column_starts[i] as usize]
+    }
+
+    /// `y = A x` for three columns at once. Both slices have [`Self::dimension`] entries.
+    pub fn multiply(&self, x: &[DVec3], y: &mut [DVec3]) {
+        y.fill(DVec3::ZERO);
+        for j in 0..self.dimension {
+            for k in self.column_starts[j] as usize..self.column_starts[j + 1] as usize {
+                let (i, value) = (self.rows[k] as usize, self.values[k]);
+                y[i] += value * x[j];
+                if i != j {
+                    y[j] += value * x[i];
+                }
+            }
+        }
+    }
+}
+
+/// A fill-reducing ordering and the pattern of the factor. It serves every matrix with the same pattern.
+pub struct Analysis {
+    symbolic: SymbolicCholesky<u32>,
+}
+
+impl Analysis {
+    /// Analyses the pattern of `matrix`.
+    ///
+    /// # Errors
+    /// Status `TooLarge` if memory does not suffice.
+    pub fn new(matrix: &SymmetricMatrix) -> Result<Self> {
+        let pattern = pattern(matrix);
+        let parameters = CholeskySymbolicParams::default();
+        let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, parameters);
+        Ok(Self { symbolic: symbolic.map_err(|error| too_large("the analysis", &error))? })
+    }
+
+    /// The number of stored values of the factor.
+    pub fn factor_value_count(&self) -> usize {
+        self.symbolic.len_val()
+    }
+}
+
+/// The Cholesky factor of a matrix, with the scratch memory that solving needs.
+pub struct Factor {
+    values: Vec<f64>,
+    /// The scaled matrix's values while factorising.
+    scaled: Vec<f64>,
+    /// `1/√` of the matrix's diagonal.
+    scale: Vec<f64>,
+    columns: Mat<f64>,
+    scratch: MemBuffer,
+    factor_scratch: MemBuffer,
+    is_singular: bool,
+}
+
+impl Factor {
+    /// Reserves the memory for factors of the analysed pattern.
+    ///
+    /// # Errors
+    /// Status `TooLarge` if memory does not suffice.
+    pub fn new(analysis: &Analysis) -> Result<Self> {
+        let dimension = analysis.symbolic.nrows();
+        let scratch = analysis.symbolic.solve_in_place_scratch::<f64>(3, Par::Seq);
+        let factor_scratch = analysis.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        let mut values = Vec::new();
+        values.try_reserve_exact(analysis.factor_value_count()).map_err(|error| too_large("the factor", &error))?;
+        values.resize(analysis.factor_value_count(), 0.0);
+        Ok(Self {
+            values,
+            scaled: Vec::new(),
+            scale: vec![1.0; dimension],
+            columns: Mat::zeros(dimension, 3),
+            scratch: MemBuffer::try_new(scratch).map_err(|error| too_large("solving", &error))?,
+            factor_scratch: MemBuffer::try_new(factor_scratch).map_err(|error| too_large("factorising", &error))?,
+            is_singular: false,
+        })
+    }
+
+    /// Factorises `matrix`, whose pattern `analysis` is of and whose diagonal is above 0. Where a row depends on others
+    /// within round-off, [`Self::is_singular`] says so and the factor is of no use.
+    ///
+    /// # Errors
+    /// Status `InvalidValue` if the matrix is not finite.
+    pub fn factorise(&mut self, analysis: &Analysis, matrix: &SymmetricMatrix) -> Result<()> {
+        for (i, scale) in self.scale.iter_mut().enumerate() {
+            *scale = 1.0 / matrix.diagonal(i).sqrt();
+        }
+        self.scaled.clear();
+        for j in 0..matrix.dimension {
+            for k in matrix.column_starts[j] as usize..matrix.column_starts[j + 1] as usize {
+                self.scaled.push(matrix.values[k] * self.scale[j] * self.scale[matrix.rows[k] as usize]);
+            }
+        }
+        if !self.scaled.iter().all(|value| value.is_finite()) {
+            return Err(Error::new(Status::InvalidValue, "the weights are too far apart for the system to be finite"));
+        }
+        let regularization = LltRegularization {
+            dynamic_regularization_delta: MARKED_PIVOT,
+            dynamic_regularization_epsilon: SINGULAR_PIVOT,
+        };
+        let outcome = analysis.symbolic.factorize_numeric_llt(
+            &mut self.values,
+            SparseColMatRef::new(pattern(matrix), &self.scaled),
+            Side::Lower,
+            regularization,
+            Par::Seq,
+            MemStack::new(&mut self.factor_scratch),
+            Default::default(),
+        );
+        outcome.map_err(|error| Error::new(Status::Internal, format!("factorisation failed: {error:?}")))?;
+        self.is_singular = self.values.iter().any(|&value| value > 1.0 / SINGULAR_PIVOT);
+        Ok(())
+    }
+
+    /// True if a row of the last matrix depended on others within round-off.
+    pub fn is_singular(&self) -> bool {
+        self.is_singular
+    }
+
+    /// Solves for x, y and z in one pass: `right_hand_sides` (the matrix's dimension) becomes the solution. Allocates
+    /// nothing.
+    pub fn solve(&mut self, analysis: &Analysis, right_hand_sides: &mut [DVec3]) {
+        for (i, (rhs, scale)) in right_hand_sides.iter().zip(&self.scale).enumerate() {
+            let scaled = *rhs * *scale;
+            self.columns[(i, 0)] = scaled.x;
+            self.columns[(i, 1)] = scaled.y;
+            self.columns[(i, 2)] = scaled.z;
+        }
+        let factor = LltRef::new(&analysis.symbolic, &self.values);
+        factor.solve_in_place_with_conj(Conj::No, self.columns.as_mut(), Par::Seq, MemStack::new(&mut self.scratch));
+        for (i, (x, scale)) in right_hand_sides.iter_mut().zip(&self.scale).enumerate() {
+            *x = *scale * DVec3::new(self.columns[(i, 0)], self.columns[(i, 1)], self.columns[(i, 2)]);
+        }
+    }
+}
+
+fn pattern(matrix: &SymmetricMatrix) -> SymbolicSparseColMatRef<'_, u32> {
+    SymbolicSparseColMatRef::new_checked(matrix.dimension, matrix.dimension, &matrix.column_starts, None, &matrix.rows)
+}
+
+fn too_large(what: &str, error: &dyn std::fmt::Debug) -> Error {
+    Error::new(Status::TooLarge, format!("{what} needs more memory than there is ({error:?})"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain of springs with one end held has a solution that can be written down: under a unit load at the free end,
+    /// node `i` moves by the number of springs before it.
+    #[test]
+    fn a_chain_of_springs_stretches_linearly() {
+        let n = 50_u32;
+        let visit = |report: &mut dyn FnMut(u32, u32)| (1..n).for_each(|i| report(i, i - 1));
+        let mut matrix = SymmetricMatrix::with_pattern(n as usize, visit).unwrap();
+        *matrix.diagonal_mut(0) += 1.0;
+        for i in 1..n {
+            for (a, b, value) in [(i, i, 1.0), (i - 1, i - 1, 1.0), (i, i - 1, -1.0)] {
+                assert!(matrix.add(a, b, value));
+            }
+        }
+        assert!(!matrix.add(0, 5, 1.0));
+        let analysis = Analysis::new(&matrix).unwrap();
+        let mut factor = Factor::new(&analysis).unwrap();
+        factor.factorise(&analysis, &matrix).unwrap();
+        assert!(!factor.is_singular());
+        let mut x = vec![DVec3::ZERO; n as usize];
+        x[n as usize - 1] = DVec3::new(1.0, -2.0, 1e-6);
+        let load = x.clone();
+        factor.solve(&analysis, &mut x);
+        for (i, x) in x.iter().enumerate() {
+            let expected = load[n as usize - 1] * (i + 1) as f64;
+            assert!((*x - expected).length() < 1e-11, "{x} != {expected}");
+        }
+        let mut back = vec![DVec3::ZERO; n as usize];
+        matrix.multiply(&x, &mut back);
+        assert!(back.iter().zip(&load).all(|(a, b)| (*a - *b).length() < 1e-11));
+    }
+
+    #[test]
+    fn a_singular_matrix_is_recognised() {
+        let visit = |report: &mut dyn FnMut(u32, u32)| report(0, 1);
+        let mut matrix = SymmetricMatrix::with_pattern(2, visit).unwrap();
+        for (i, j, value) in [(0, 0, 3e8), (1, 1, 3e8), (1, 0, -3e8)] {
+            assert!(matrix.add(i, j, value));
+        }
+        let analysis = Analysis::new(&matrix).unwrap();
+        let mut factor = Factor::new(&analysis).unwrap();
+        factor.factorise(&analysis, &matrix).unwrap();
+        assert!(factor.is_singular());
+    }
+}

@@ -1,0 +1,4 @@
+//! Linear algebra: the sparse system of the global step, and closed forms in two and three dimensions.
+
+pub mod cholesky;
+pub mod small;
