@@ -2,3 +2,5 @@
 pub mod constraints;
 pub mod error;
 pub mod linalg;
+pub mod problem;
+pub mod solver;

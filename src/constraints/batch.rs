@@ -46,6 +46,10 @@ pub(crate) trait Batch: Send + Sync {
     /// `stiffness[0]` belonging to the first slot.
     fn squared_residual(&self, slots: Range<usize>, points: &[DVec3], targets: &[DVec3], stiffness: &[f64]) -> f64;
 
+    /// Subtracts from the targets of each centred constraint of `slots` their mean; nothing for other types. Then they are
+    /// their own image under `Aᵀ`.
+    fn centre_targets(&self, slots: Range<usize>, targets: &mut [DVec3]);
+
     /// The violation of a slot, in the type's unit.
     fn violation(&self, slot: usize, points: &[DVec3]) -> f64;
 
@@ -235,6 +239,19 @@ impl<T: Constraint> Batch for TypedBatch<T> {
             sum += stiffness * squared;
         }
         sum
+    }
+
+    fn centre_targets(&self, slots: Range<usize>, targets: &mut [DVec3]) {
+        if T::INFO.rows != Rows::Centred {
+            return;
+        }
+        let mut rest = targets;
+        for slot in slots {
+            let (own, later) = rest.split_at_mut(self.indices.get(slot).len());
+            let mean = own.iter().sum::<DVec3>() / own.len() as f64;
+            own.iter_mut().for_each(|target| *target -= mean);
+            rest = later;
+        }
     }
 
     fn violation(&self, slot: usize, points: &[DVec3]) -> f64 {

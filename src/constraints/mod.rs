@@ -15,7 +15,7 @@ mod set;
 mod stencil;
 
 pub(crate) use batch::Batch;
-pub use set::{ConstraintId, ConstraintSet, NewConstraints};
+pub use set::{ConstraintId, ConstraintSet, ConstraintView, Edited, NewConstraints};
 pub use stencil::Stencil;
 
 use crate::error::{Error, Result, Status};

@@ -140,14 +140,22 @@ impl ConstraintSet {
     }
 
     /// Adds constraints of one type, at rest where `points` are now, all or none. Their ids follow each other from the
-    /// one returned.
+    /// one returned. An error is placed at `name_of` the id that the constraint would have got.
     ///
     /// # Errors
     /// The type is unknown, a count does not fit, an index is out of range, a weight is negative or not finite, a scalar
     /// is outside its domain. Nothing is added then.
-    pub fn add(&mut self, points: &[DVec3], new: NewConstraints<'_>) -> Result<ConstraintId> {
-        let type_index = TypeIndex::named(new.type_name)?;
-        self.check_new(points.len(), type_index, new)?;
+    pub fn add(
+        &mut self,
+        points: &[DVec3],
+        new: NewConstraints<'_>,
+        name_of: impl Fn(ConstraintId) -> String,
+    ) -> Result<ConstraintId> {
+        let type_index = match TypeIndex::named(new.type_name) {
+            Ok(type_index) => type_index,
+            Err(error) => return Err(error.at(name_of(self.places.len()))),
+        };
+        self.check_new(points.len(), type_index, new, name_of)?;
         let first_id = self.places.len();
         let group = &mut self.groups[type_index.0 as usize];
         for (i, (indices, scalars)) in new.each().enumerate() {
@@ -240,6 +248,11 @@ impl ConstraintSet {
         self.groups.iter().map(|group| (&*group.batch, group.weights.as_slice()))
     }
 
+    /// The batch of the type with this index.
+    pub(crate) fn batch(&self, type_index: usize) -> &dyn Batch {
+        &*self.groups[type_index].batch
+    }
+
     /// The type, indices, weight and scalars in force of a constraint; `None` if the id is none.
     pub fn get(&self, id: ConstraintId) -> Option<ConstraintView<'_>> {
         let place = (*self.places.get(id)?)?;
@@ -284,9 +297,15 @@ impl ConstraintSet {
         }
     }
 
-    fn check_new(&self, point_count: usize, type_index: TypeIndex, new: NewConstraints<'_>) -> Result<()> {
+    fn check_new(
+        &self,
+        point_count: usize,
+        type_index: TypeIndex,
+        new: NewConstraints<'_>,
+        name_of: impl Fn(ConstraintId) -> String,
+    ) -> Result<()> {
         let info = type_index.info();
-        let name_of = |i: usize| format!("constraint {} (\"{}\")", self.places.len() + i, info.name);
+        let name_of = |i: usize| name_of(self.places.len() + i);
         if u32::try_from(self.places.len() + new.counts.len()).is_err() {
             return Err(Error::new(Status::TooLarge, "more than 4294967295 constraints"));
         }

@@ -1,0 +1,257 @@
+//! A problem as plain data: points, constraint signatures, forces and settings, with a JSON form.
+//!
+//! A [`Problem`] can be saved, sent, replayed and compared; a `Solver` is made from it. The rest state of every
+//! constraint is taken from `points`. Validation names the place that errs:
+//! `constraints[17].indices[2]: 5000 is out of range for 4096 points`.
+
+mod forces;
+
+pub use forces::{Force, ForceId, ForceSet};
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::constraints::{ConstraintSet, NewConstraints};
+use crate::error::{Error, Result, Status, finite};
+
+/// The version of the JSON form that this library writes and reads.
+pub const VERSION: u32 = 1;
+
+/// Whether the points keep their momentum.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum Mode {
+    /// Optimise for an equilibrium.
+    #[default]
+    Static,
+    /// Simulate with implicit Euler steps.
+    Dynamic,
+}
+
+/// One constraint as the user states it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Signature {
+    /// The name of its type, such as `Plane`.
+    #[serde(rename = "type")]
+    pub type_name: String,
+    /// Indices into the points; their number and meaning depend on the type.
+    pub indices: Vec<u32>,
+    /// How much it counts against the others; at least 0.
+    #[serde(default = "one")]
+    pub weight: f64,
+    /// Its scalars, as its type states them; absent or null: the defaults.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scalars: Option<Vec<f64>>,
+}
+
+/// What a force acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum ForceKind {
+    /// Every point.
+    Gravity,
+    /// The point `id`.
+    Vertex,
+}
+
+/// One force as the user states it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct ForceSignature {
+    /// What it acts on.
+    pub kind: ForceKind,
+    /// Its components; in dynamic mode it acts as an acceleration.
+    pub force: [f64; 3],
+    /// The point that a vertex force acts on; absent for gravity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<u32>,
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// Iterations at most, in dynamic mode within each time step.
+    pub max_iterations: u32,
+    /// Stop when the largest move of a point in one iteration, relative to the bounding-box diagonal, falls below this.
+    pub tolerance: f64,
+    /// Stop after so many seconds; 0: no limit.
+    pub time_budget_seconds: f64,
+    /// The number of time steps in dynamic mode.
+    pub steps: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { max_iterations: 1000, tolerance: 1e-6, time_budget_seconds: 0.0, steps: 1 }
+    }
+}
+
+/// Points, constraints, forces and settings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Problem {
+    /// The version of this form: 1.
+    pub version: u32,
+    /// Static or dynamic.
+    #[serde(default)]
+    pub mode: Mode,
+    /// The mass of every point (dynamic mode), above 0.
+    #[serde(default = "one")]
+    pub masses: f64,
+    /// The factor on the velocities after each step (dynamic mode), at least 0.
+    #[serde(default = "one")]
+    pub damping: f64,
+    /// The time step (dynamic mode), above 0.
+    #[serde(default = "one")]
+    pub timestep: f64,
+    /// Coordinates `[x, y, z]` in model units.
+    pub points: Vec<[f64; 3]>,
+    /// The constraints, in the order of their ids.
+    #[serde(default)]
+    pub constraints: Vec<Signature>,
+    /// The forces, in the order of their ids.
+    #[serde(default)]
+    pub forces: Vec<ForceSignature>,
+    /// When to stop.
+    #[serde(default)]
+    pub settings: Settings,
+    /// Faces as lists of point indices, for files and pictures only.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faces: Vec<Vec<u32>>,
+    /// Edges as pairs of point indices, for files and pictures only.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub edges: Vec<[u32; 2]>,
+    /// Anything else that its author wants to keep; never read.
+    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
+    pub extra: serde_json::Map<String, serde_json::Value>,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl Default for Problem {
+    fn default() -> Self {
+        Self {
+            version: VERSION,
+            mode: Mode::Static,
+            masses: 1.0,
+            damping: 1.0,
+            timestep: 1.0,
+            points: Vec::new(),
+            constraints: Vec::new(),
+            forces: Vec::new(),
+            settings: Settings::default(),
+            faces: Vec::new(),
+            edges: Vec::new(),
+            extra: serde_json::Map::new(),
+        }
+    }
+}
+
+impl Problem {
+    /// Reads the JSON form and checks everything in it.
+    ///
+    /// # Errors
+    /// The place in the text and what was expected there.
+    pub fn from_json(text: &str) -> Result<Self> {
+        let mut deserializer = serde_json::Deserializer::from_str(text);
+        let problem: Self = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+            let place = error.path().to_string();
+            let refusal = Error::new(Status::InvalidInput, error.inner().to_string());
+            if place == "." { refusal } else { refusal.at(place) }
+        })?;
+        deserializer.end().map_err(|error| Error::new(Status::InvalidInput, error.to_string()))?;
+        problem.check()?;
+        Ok(problem)
+    }
+
+    /// The JSON form, indented, ending in a newline.
+    pub fn to_json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
+        text.push('\n');
+        text
+    }
+
+    /// Checks everything that a solver would refuse.
+    ///
+    /// # Errors
+    /// The first place that errs.
+    pub fn check(&self) -> Result<()> {
+        self.assemble().map(drop)
+    }
+
+    /// The parts that a solver works on.
+    pub(crate) fn assemble(&self) -> Result<(Vec<DVec3>, ConstraintSet, ForceSet)> {
+        let invalid = |place: &str, reason: String| Err(Error::new(Status::InvalidValue, reason).at(place));
+        if self.version != VERSION {
+            return invalid("version", format!("expected {VERSION}, found {}", self.version));
+        }
+        for (name, value) in [("masses", self.masses), ("timestep", self.timestep)] {
+            if finite(name, value)? <= 0.0 {
+                return invalid(name, format!("expected a number above 0, found {value}"));
+            }
+        }
+        let settings = &self.settings;
+        let at_least_0 = [
+            ("damping", self.damping),
+            ("settings.tolerance", settings.tolerance),
+            ("settings.time_budget_seconds", settings.time_budget_seconds),
+        ];
+        for (name, value) in at_least_0 {
+            if finite(name, value)? < 0.0 {
+                return invalid(name, format!("expected at least 0, found {value}"));
+            }
+        }
+        let points: Vec<DVec3> = self.points.iter().copied().map(DVec3::from_array).collect();
+        if let Some(i) = points.iter().position(|point| !point.is_finite()) {
+            return invalid(
+                &format!("points[{i}]"),
+                format!("expected finite coordinates, found {:?}", self.points[i]),
+            );
+        }
+        let in_range = |place: String, list: &[u32]| match list.iter().position(|&i| i as usize >= points.len()) {
+            None => Ok(()),
+            Some(j) => {
+                let reason = format!("{} is out of range for {} points", list[j], points.len());
+                Err(Error::new(Status::IndexOutOfRange, reason).at(format!("{place}[{j}]")))
+            }
+        };
+        for (i, face) in self.faces.iter().enumerate() {
+            in_range(format!("faces[{i}]"), face)?;
+        }
+        for (i, edge) in self.edges.iter().enumerate() {
+            in_range(format!("edges[{i}]"), edge)?;
+        }
+        let mut constraints = ConstraintSet::default();
+        for signature in &self.constraints {
+            let scalars = signature.scalars.as_deref();
+            let scalar_count = scalars.map(<[f64]>::len);
+            let new = NewConstraints {
+                type_name: &signature.type_name,
+                indices: &signature.indices,
+                counts: &[signature.indices.len()],
+                weights: &[signature.weight],
+                scalars: scalars.unwrap_or_default(),
+                scalar_counts: scalar_count.as_slice(),
+            };
+            constraints.add(&points, new, |id| format!("constraints[{id}]"))?;
+        }
+        let mut forces = ForceSet::default();
+        for (i, signature) in self.forces.iter().enumerate() {
+            let force = Force::from_signature(signature);
+            force
+                .and_then(|force| forces.add(force, points.len()))
+                .map_err(|error| error.at(format!("forces[{i}]")))?;
+        }
+        Ok((points, constraints, forces))
+    }
+}

@@ -1,0 +1,392 @@
+//! The local/global solver.
+//!
+//! One iteration: the *local step* projects the points onto every constraint; the *global step* solves
+//! `N x = Aᵀp + external` for new points. Static: `N = Σ s AᵀA`, `external` is the sum of forces. Dynamic: `N` gains the
+//! inertia `M = (m/δ₀²) I` and `external` is `M y`, `y` being where momentum alone would take the points. Either way an
+//! iteration with nearest projections never raises the energy. Sources: Bouaziz et al. 2012 and 2014; Deuss et al. 2015.
+
+mod local_global;
+mod parallel;
+mod report;
+mod system;
+
+pub use report::{Outcome, Progress, Report, SolveOptions};
+
+use std::ops::ControlFlow;
+use std::sync::{Arc, OnceLock};
+
+use glam::DVec3;
+
+use crate::constraints::{ConstraintId, ConstraintSet, ConstraintView, Edited, NewConstraints};
+use crate::error::{Error, Result, Status, finite};
+use crate::problem::{Force, ForceId, ForceSet, Mode, Problem};
+use system::System;
+
+/// Iterations without a lower energy or a smaller largest move after which a solve is called stalled.
+pub const STALL_ITERATIONS: u32 = 100;
+
+/// What a caller's progress function answers.
+pub type ProgressFn<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
+
+/// Points, constraints and forces, and the state of solving for them.
+#[derive(Default)]
+pub struct Solver {
+    points: Vec<DVec3>,
+    constraints: ConstraintSet,
+    forces: ForceSet,
+    /// `None` before the first initialisation.
+    dynamics: Option<Dynamics>,
+    /// `None` where it must be made anew before the next solve.
+    system: Option<System>,
+    /// The last system if it may serve for the pattern of the next.
+    outdated_system: Option<System>,
+    workspace: Workspace,
+    thread_count: usize,
+    pool: Option<Arc<rayon::ThreadPool>>,
+}
+
+/// The state of the time integration; in static mode only mass and step of libShapeOp's defaults.
+#[derive(Clone)]
+struct Dynamics {
+    mode: Mode,
+    mass: f64,
+    damping: f64,
+    timestep: f64,
+    /// The step at initialisation, which the inertia keeps.
+    initial_timestep: f64,
+    velocities: Vec<DVec3>,
+}
+
+impl Dynamics {
+    /// `m/δ₀²`, the factor on `y`.
+    fn inertia(&self) -> f64 {
+        self.mass / (self.initial_timestep * self.initial_timestep)
+    }
+}
+
+/// Memory that is kept between calls so that iterations allocate nothing.
+#[derive(Default)]
+struct Workspace {
+    /// The sum of forces on each point.
+    forces: Vec<DVec3>,
+    /// `M y`, one entry per point; empty in static mode without forces.
+    external: Vec<DVec3>,
+    /// Where momentum alone takes the points (dynamic mode).
+    momentum: Vec<DVec3>,
+    /// The points at the start of the call.
+    start: Vec<DVec3>,
+}
+
+impl Solver {
+    /// A solver without points.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A solver for `problem`, initialised in its mode.
+    ///
+    /// # Errors
+    /// What [`Problem::check`] refuses, or what initialising refuses.
+    pub fn from_problem(problem: &Problem) -> Result<Self> {
+        let (points, constraints, forces) = problem.assemble()?;
+        let mut solver = Self { points, constraints, forces, ..Self::default() };
+        match problem.mode {
+            Mode::Static => solver.init()?,
+            Mode::Dynamic => solver.init_dynamic(problem.masses, problem.damping, problem.timestep)?,
+        }
+        Ok(solver)
+    }
+
+    /// The current points.
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// Replaces the positions; rest states, targets and velocities stay. Their number may change as long as no
+    /// constraint or force refers beyond it; added points start at rest.
+    ///
+    /// # Errors
+    /// A coordinate is not finite, or a constraint or force refers to a point that would be gone.
+    pub fn set_points(&mut self, points: &[DVec3]) -> Result<()> {
+        if let Some(i) = points.iter().position(|point| !point.is_finite()) {
+            let reason = format!("expected finite coordinates, found {}", points[i]);
+            return Err(Error::new(Status::InvalidValue, reason).at(format!("points[{i}]")));
+        }
+        if points.len() != self.points.len() {
+            self.check_point_count(points.len())?;
+            self.invalidate();
+            self.outdated_system = None;
+            if let Some(dynamics) = &mut self.dynamics {
+                dynamics.velocities.resize(points.len(), DVec3::ZERO);
+            }
+        }
+        self.points.clear();
+        self.points.extend_from_slice(points);
+        Ok(())
+    }
+
+    /// The number of constraint ids given out, removed ones included.
+    pub fn constraint_count(&self) -> usize {
+        self.constraints.id_count()
+    }
+
+    /// One constraint as it stands; `None` if `id` is none or was removed.
+    pub fn constraint(&self, id: ConstraintId) -> Option<ConstraintView<'_>> {
+        self.constraints.get(id)
+    }
+
+    /// Adds a constraint with the default scalars, at rest where the points are now.
+    ///
+    /// # Errors
+    /// See [`Solver::add_constraints`].
+    pub fn add_constraint(&mut self, type_name: &str, indices: &[u32], weight: f64) -> Result<ConstraintId> {
+        let (counts, weights) = ([indices.len()], [weight]);
+        let new =
+            NewConstraints { type_name, indices, counts: &counts, weights: &weights, scalars: &[], scalar_counts: &[] };
+        self.add_constraints(new)
+    }
+
+    /// Adds constraints of one type, all or none. Their ids follow each other from the one returned.
+    ///
+    /// # Errors
+    /// The type is unknown, a count does not fit, an index is out of range, a weight is negative or not finite, or a
+    /// scalar is outside its domain.
+    pub fn add_constraints(&mut self, new: NewConstraints<'_>) -> Result<ConstraintId> {
+        let name_of = |id| format!("constraint {id} (\"{}\")", new.type_name);
+        let first = self.constraints.add(&self.points, new, name_of)?;
+        if !new.counts.is_empty() {
+            self.invalidate();
+        }
+        Ok(first)
+    }
+
+    /// Replaces the scalars of a constraint. The next solve uses them; it factorises again only if rows changed.
+    ///
+    /// # Errors
+    /// See [`ConstraintSet::edit`].
+    pub fn edit_constraint(&mut self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<()> {
+        if self.constraints.edit(type_name, id, scalars)? == Edited::Rows {
+            self.invalidate();
+        }
+        Ok(())
+    }
+
+    /// Sets the weight of a constraint.
+    ///
+    /// # Errors
+    /// `id` is no constraint, or the weight is negative or not finite.
+    pub fn set_weight(&mut self, id: ConstraintId, weight: f64) -> Result<()> {
+        if self.constraints.set_weight(id, weight)? {
+            self.invalidate();
+        }
+        Ok(())
+    }
+
+    /// Removes a constraint; its id is never given out again.
+    ///
+    /// # Errors
+    /// `id` is no constraint.
+    pub fn remove_constraint(&mut self, id: ConstraintId) -> Result<()> {
+        self.constraints.remove(id)?;
+        self.invalidate();
+        Ok(())
+    }
+
+    /// The number of force ids given out, removed ones included.
+    pub fn force_count(&self) -> usize {
+        self.forces.id_count()
+    }
+
+    /// True if `id` is a force that was not removed.
+    pub fn is_force(&self, id: ForceId) -> bool {
+        self.forces.contains(id)
+    }
+
+    /// Adds a force.
+    ///
+    /// # Errors
+    /// It is not finite, or its point is out of range.
+    pub fn add_force(&mut self, force: Force) -> Result<ForceId> {
+        self.forces.add(force, self.points.len())
+    }
+
+    /// Replaces a vertex force.
+    ///
+    /// # Errors
+    /// `id` is no vertex force, the force is not finite, or the point is out of range.
+    pub fn edit_vertex_force(&mut self, id: ForceId, force: DVec3, point: u32) -> Result<()> {
+        self.forces.edit_vertex_force(id, force, point, self.points.len())
+    }
+
+    /// Removes a force; its id is never given out again.
+    ///
+    /// # Errors
+    /// `id` is no force.
+    pub fn remove_force(&mut self, id: ForceId) -> Result<()> {
+        self.forces.remove(id)
+    }
+
+    /// Prepares for static solving from the current points; velocities start at zero.
+    ///
+    /// # Errors
+    /// Status `TooLarge` or `InvalidValue` if the system cannot be factorised.
+    pub fn init(&mut self) -> Result<()> {
+        self.init_with(Mode::Static, 1.0, 1.0, 1.0)
+    }
+
+    /// Prepares for dynamic solving from the current points with zero velocities. `mass` is that of every point,
+    /// `damping` the factor on velocities after each step.
+    ///
+    /// # Errors
+    /// `mass` or `timestep` is not finite and above 0, `damping` not finite and at least 0, or as [`Solver::init`].
+    pub fn init_dynamic(&mut self, mass: f64, damping: f64, timestep: f64) -> Result<()> {
+        check_above_0("masses", mass)?;
+        check_damping(damping)?;
+        check_above_0("timestep", timestep)?;
+        self.init_with(Mode::Dynamic, mass, damping, timestep)
+    }
+
+    /// Changes the time step of the following steps, not the inertia. Before initialisation it has no effect.
+    ///
+    /// # Errors
+    /// It is not finite and above 0.
+    pub fn set_timestep(&mut self, timestep: f64) -> Result<()> {
+        check_above_0("timestep", timestep)?;
+        if let Some(dynamics) = &mut self.dynamics {
+            dynamics.timestep = timestep;
+        }
+        Ok(())
+    }
+
+    /// Changes the damping of the following steps. Before initialisation it has no effect.
+    ///
+    /// # Errors
+    /// It is not finite and at least 0.
+    pub fn set_damping(&mut self, damping: f64) -> Result<()> {
+        check_damping(damping)?;
+        if let Some(dynamics) = &mut self.dynamics {
+            dynamics.damping = damping;
+        }
+        Ok(())
+    }
+
+    /// Sets the number of threads for large problems; 0: as many as the machine has. The results are the same bits.
+    pub fn set_thread_count(&mut self, thread_count: usize) {
+        if thread_count != self.thread_count {
+            self.thread_count = thread_count;
+            self.pool = None;
+        }
+    }
+
+    /// The violation of every constraint id at the current points, each in its type's unit; 0 for removed ones.
+    pub fn violations(&self) -> Vec<f64> {
+        self.constraints.violations(&self.points)
+    }
+
+    /// The energy at the current points: `½ Σ s ‖A x − P(x)‖²`, in static mode minus the forces' potential, in dynamic
+    /// mode plus `½ (x−y)ᵀ M (x−y)` with the `y` of the last step.
+    pub fn energy(&self) -> f64 {
+        System::constraint_energy(&self.constraints, &self.points) + self.external_energy()
+    }
+
+    /// The number of points that no constraint of a weight above 0 holds.
+    pub fn unconstrained_count(&self) -> usize {
+        let mut is_held = vec![false; self.points.len()];
+        for (batch, weights) in self.constraints.batches() {
+            for (slot, _) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
+                batch.indices(slot).iter().for_each(|&point| is_held[point as usize] = true);
+            }
+        }
+        is_held.iter().filter(|is_held| !**is_held).count()
+    }
+
+    fn init_with(&mut self, mode: Mode, mass: f64, damping: f64, timestep: f64) -> Result<()> {
+        let velocities = vec![DVec3::ZERO; self.points.len()];
+        let before = self.dynamics.take();
+        let inertia_before = before.as_ref().filter(|old| old.mode == Mode::Dynamic).map_or(0.0, Dynamics::inertia);
+        let new = Dynamics { mode, mass, damping, timestep, initial_timestep: timestep, velocities };
+        let inertia = if mode == Mode::Dynamic { new.inertia() } else { 0.0 };
+        self.workspace.external.clear();
+        self.workspace.momentum.clear();
+        if inertia != inertia_before {
+            self.invalidate();
+        }
+        self.dynamics = Some(new);
+        let prepared = self.prepare();
+        if prepared.is_err() {
+            self.dynamics = before;
+            self.invalidate();
+        }
+        prepared
+    }
+
+    /// Marks the system as outdated.
+    fn invalidate(&mut self) {
+        if let Some(system) = self.system.take() {
+            self.outdated_system = Some(system);
+        }
+    }
+
+    /// Makes the system if it is outdated.
+    fn prepare(&mut self) -> Result<()> {
+        let Some(dynamics) = &self.dynamics else {
+            let reason = "the solver was not initialised: call init or initDynamic before solve";
+            return Err(Error::new(Status::NotInitialised, reason));
+        };
+        if self.system.is_none() {
+            self.constraints.compact();
+            let inertia = if dynamics.mode == Mode::Dynamic { dynamics.inertia() } else { 0.0 };
+            let previous = self.outdated_system.take();
+            self.system = Some(System::new(&self.constraints, self.points.len(), inertia, previous)?);
+        }
+        Ok(())
+    }
+
+    fn check_point_count(&self, count: usize) -> Result<()> {
+        let found = self.constraints.first_beyond(count).map(|(id, point)| (format!("constraint {id}"), point));
+        let found = found.or_else(|| self.forces.first_beyond(count).map(|(id, point)| (format!("force {id}"), point)));
+        match found {
+            None => Ok(()),
+            Some((what, point)) => {
+                let reason = format!("expected more than {point}, as {what} refers to it; found {count}");
+                Err(Error::new(Status::InvalidArgumentLength, reason).at("number of points"))
+            }
+        }
+    }
+
+    /// The pool, if the system is large enough for more than one thread.
+    fn pool_if_large(&mut self) -> Option<Arc<rayon::ThreadPool>> {
+        let is_large = self.thread_count != 1 && self.system.as_ref().is_some_and(System::is_parallel);
+        if is_large { self.pool() } else { None }
+    }
+
+    /// The pool for large problems: never the host's, and one for all solvers that leave the number to the machine.
+    fn pool(&mut self) -> Option<Arc<rayon::ThreadPool>> {
+        static AUTOMATIC: OnceLock<Option<Arc<rayon::ThreadPool>>> = OnceLock::new();
+        let build = |count| {
+            let name = |i| format!("shapeop-{i}");
+            rayon::ThreadPoolBuilder::new().num_threads(count).thread_name(name).build().ok().map(Arc::new)
+        };
+        if self.thread_count == 0 {
+            return AUTOMATIC.get_or_init(|| build(0)).clone();
+        }
+        if self.pool.is_none() {
+            self.pool = build(self.thread_count);
+        }
+        self.pool.clone()
+    }
+}
+
+fn check_above_0(name: &str, value: f64) -> Result<()> {
+    if finite(name, value)? > 0.0 {
+        return Ok(());
+    }
+    Err(Error::new(Status::InvalidValue, format!("expected a number above 0, found {value}")).at(name))
+}
+
+fn check_damping(damping: f64) -> Result<()> {
+    if finite("damping", damping)? >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::new(Status::InvalidValue, format!("expected at least 0, found {damping}")).at("damping"))
+}

@@ -1,0 +1,96 @@
+//! What a solve was asked for and what it found.
+
+use super::Solver;
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolveOptions {
+    /// Iterations at most; in dynamic mode within the one time step that a call makes.
+    pub max_iterations: u32,
+    /// Stop when `max_i ‖x_i' − x_i‖ < tolerance · d`: `x` and `x'` the points before and after an iteration, `d` the
+    /// bounding-box diagonal at the start of the call. 0 never stops that way.
+    pub tolerance: f64,
+    /// Stop after so many seconds, looked at once per iteration; 0: no limit.
+    pub time_budget_seconds: f64,
+}
+
+impl Default for SolveOptions {
+    fn default() -> Self {
+        let settings = crate::problem::Settings::default();
+        Self {
+            max_iterations: settings.max_iterations,
+            tolerance: settings.tolerance,
+            time_budget_seconds: settings.time_budget_seconds,
+        }
+    }
+}
+
+/// Why a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Outcome {
+    /// The largest move fell below the tolerance.
+    Converged = 0,
+    /// The iterations were used up.
+    IterationLimit = 1,
+    /// The time was used up.
+    TimeBudget = 2,
+    /// The caller's progress function said so.
+    Cancelled = 3,
+    /// For [`super::STALL_ITERATIONS`] iterations neither the energy nor the largest move fell.
+    Stalled = 4,
+    /// A force acts along a motion that no constraint resists; the points did not move.
+    Unbounded = 5,
+}
+
+impl Outcome {
+    /// The outcome in words.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::IterationLimit => "iteration limit",
+            Self::TimeBudget => "time budget",
+            Self::Cancelled => "cancelled",
+            Self::Stalled => "stalled",
+            Self::Unbounded => "unbounded",
+        }
+    }
+}
+
+/// What a solve found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Iterations made.
+    pub iterations: u32,
+    /// The energy at the points that the iterations started from.
+    pub energy_before: f64,
+    /// The energy at the points that were reached.
+    pub energy_after: f64,
+    /// The largest move of a point in the last iteration, relative to the bounding-box diagonal.
+    pub largest_move: f64,
+    /// Why it ended.
+    pub outcome: Outcome,
+    /// More about an outcome of [`Outcome::Unbounded`]: the point or component that is free to move. Else empty.
+    pub message: String,
+    /// Seconds spent on the ordering and the pattern of the factor, when the system in use was made.
+    pub analysis_seconds: f64,
+    /// Seconds spent on the factor's numbers, when the system in use was made.
+    pub factorisation_seconds: f64,
+    /// Seconds spent on projections in this call.
+    pub local_seconds: f64,
+    /// Seconds spent on right-hand sides and linear solves in this call.
+    pub global_seconds: f64,
+}
+
+/// What a progress function sees after every iteration.
+#[derive(Clone, Copy)]
+pub struct Progress<'a> {
+    /// Iterations made so far, from 1.
+    pub iteration: u32,
+    /// The energy at the current points.
+    pub energy: f64,
+    /// The largest move of a point in this iteration, relative to the bounding-box diagonal.
+    pub largest_move: f64,
+    /// The solver with the current points.
+    pub solver: &'a Solver,
+}
