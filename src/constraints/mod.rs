@@ -145,7 +145,7 @@ impl TypeInfo {
             None => format!("at least {}", self.least_indices),
         };
         let reason = format!("expected {expected} for \"{}\", found {count}", self.name);
-        Err(Error::new(Status::InvalidArgumentLength, reason).at("number of indices"))
+        Err(Error::new(Status::InvalidArgumentLength, reason).at("indices"))
     }
 
     /// Refuses a number of scalars that a constraint of `k` points does not take.
@@ -162,7 +162,7 @@ impl TypeInfo {
             Scalars::Named(names) => {
                 let list = names.iter().map(|scalar| scalar.name).collect::<Vec<_>>().join(", ");
                 let reason = format!("expected {} for \"{}\" ({list}), found {count}", names.len(), self.name);
-                Err(Error::new(Status::InvalidArgumentLength, reason).at("number of scalars"))
+                Err(Error::new(Status::InvalidArgumentLength, reason).at("scalars"))
             }
             Scalars::Shapes if count == 0 => {
                 let reason = format!("\"{}\" needs at least one shape, found none", self.name);
@@ -171,7 +171,7 @@ impl TypeInfo {
             Scalars::Shapes if count.is_multiple_of(3 * k) => Ok(()),
             Scalars::Shapes => {
                 let reason = format!("expected a multiple of {} (x y z per point and shape), found {count}", 3 * k);
-                Err(Error::new(Status::InvalidArgumentLength, reason).at("number of scalars"))
+                Err(Error::new(Status::InvalidArgumentLength, reason).at("scalars"))
             }
         }
     }
@@ -193,7 +193,7 @@ impl TypeIndex {
             None => {
                 let names = types().map(|info| info.name).collect::<Vec<_>>().join(", ");
                 let reason = format!("\"{name}\" is not one of {names}");
-                Err(Error::new(Status::InvalidConstraintType, reason).at("constraint type"))
+                Err(Error::new(Status::InvalidConstraintType, reason).at("type"))
             }
         }
     }

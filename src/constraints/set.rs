@@ -376,5 +376,5 @@ fn check_scalars(type_index: TypeIndex, index_count: usize, scalars: &[f64]) -> 
     for (i, &scalar) in scalars.iter().enumerate() {
         finite(&format!("scalars[{i}]"), scalar)?;
     }
-    (REGISTRY[type_index.0 as usize].check_scalars)(scalars)
+    (REGISTRY[type_index.0 as usize].check_scalars)(scalars).map_err(|error| error.at("scalars"))
 }

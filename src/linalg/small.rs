@@ -24,9 +24,10 @@ fn jacobi_rotation(a: f64, b: f64, d: f64) -> (f64, f64) {
         return (1.0, 0.0);
     }
     // The smaller root of t² + 2τt − 1 = 0, written without cancellation.
+    // Where τ² overflows, t is 0 as it should be.
     let tau = (d - a) / (2.0 * b);
-    let t = if tau.is_infinite() { 0.0 } else { tau.signum() / (tau.abs() + tau.hypot(1.0)) };
-    let cosine = 1.0 / t.hypot(1.0);
+    let t = tau.signum() / (tau.abs() + (tau * tau + 1.0).sqrt());
+    let cosine = 1.0 / (t * t + 1.0).sqrt();
     (cosine, t * cosine)
 }
 

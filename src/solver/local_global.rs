@@ -6,6 +6,7 @@ use std::time::Instant;
 use glam::DVec3;
 
 use super::Workspace;
+use super::system::System;
 use super::{Dynamics, Outcome, Progress, ProgressFn, Report, STALL_ITERATIONS, SolveOptions, Solver};
 use crate::error::{Error, Result, Status};
 use crate::problem::Mode;
@@ -166,12 +167,12 @@ impl Solver {
     /// Projects; returns the energy at the current points if it is wanted, else 0.
     fn local_step(&mut self, wants_energy: bool, clock: &mut Clock) -> f64 {
         let started = Instant::now();
-        let pool = self.pool_if_large();
+        let pool = self.pool_if(System::is_local_step_long);
         let Some(system) = &mut self.system else { return 0.0 };
         let (constraints, points) = (&self.constraints, &self.points);
         let energy = match pool {
-            Some(pool) => pool.install(|| system.local_step(constraints, points, wants_energy)),
-            None => system.local_step(constraints, points, wants_energy),
+            Some(pool) => pool.install(|| system.local_step(constraints, points, wants_energy, true)),
+            None => system.local_step(constraints, points, wants_energy, false),
         };
         clock.local_seconds += started.elapsed().as_secs_f64();
         if wants_energy { energy + self.external_energy() } else { 0.0 }
@@ -180,12 +181,12 @@ impl Solver {
     /// Solves for new points; returns the largest move.
     fn global_step(&mut self, clock: &mut Clock) -> f64 {
         let started = Instant::now();
-        let pool = self.pool_if_large();
+        let pool = self.pool_if(System::is_global_step_long);
         let Some(system) = &mut self.system else { return 0.0 };
         let (points, external) = (&self.points, &self.workspace.external);
         let new = match pool {
-            Some(pool) => pool.install(|| system.global_step(points, external)),
-            None => system.global_step(points, external),
+            Some(pool) => pool.install(|| system.global_step(points, external, true)),
+            None => system.global_step(points, external, false),
         };
         let mut largest_move = 0.0_f64;
         for (point, new) in self.points.iter_mut().zip(new) {

@@ -354,10 +354,10 @@ impl Solver {
         }
     }
 
-    /// The pool, if the system is large enough for more than one thread.
-    fn pool_if_large(&mut self) -> Option<Arc<rayon::ThreadPool>> {
-        let is_large = self.thread_count != 1 && self.system.as_ref().is_some_and(System::is_parallel);
-        if is_large { self.pool() } else { None }
+    /// The pool, if more than one thread is allowed and the system is large enough in the sense of `is_long`.
+    fn pool_if(&mut self, is_long: impl Fn(&System) -> bool) -> Option<Arc<rayon::ThreadPool>> {
+        let is_long = self.thread_count != 1 && self.system.as_ref().is_some_and(is_long);
+        if is_long { self.pool() } else { None }
     }
 
     /// The pool for large problems: never the host's, and one for all solvers that leave the number to the machine.

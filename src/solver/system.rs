@@ -32,8 +32,11 @@ const CHUNK_INDICES: usize = 512;
 /// Points whose right-hand sides one chunk gathers.
 const CHUNK_POINTS: usize = 1024;
 
-/// Targets above which the local step runs in parallel. Below, waking a thread costs more than it saves.
-const PARALLEL_TARGETS: usize = 8 * CHUNK_INDICES;
+/// Targets above which the local step runs in parallel: with the fastest types, two threads break even at half as many.
+const PARALLEL_TARGETS: usize = 2048;
+
+/// Entries of `Aᵀ` above which right-hand sides are gathered in parallel. Far less work per entry than a projection.
+const PARALLEL_ENTRIES: usize = 1 << 16;
 
 /// The pull of a proximal step, relative to the diagonal of `N`. Round-off along free motions is amplified by its
 /// inverse: 1e-16 becomes 1e-10 of the model's size per iteration.
@@ -163,14 +166,26 @@ impl System {
         Ok(system)
     }
 
-    /// True if an iteration is long enough for more than one thread.
-    pub(super) fn is_parallel(&self) -> bool {
+    /// True if a local step is long enough to gain from more than one thread.
+    pub(super) fn is_local_step_long(&self) -> bool {
         self.targets.len() >= PARALLEL_TARGETS
     }
 
-    /// Projects `points` onto every constraint. Returns `½ Σ s ‖A x − p‖²` if `wants_energy`, else 0.
-    pub(super) fn local_step(&mut self, constraints: &ConstraintSet, points: &[DVec3], wants_energy: bool) -> f64 {
-        let (chunks, stiffness, is_parallel) = (&self.chunks, &self.stiffness, self.is_parallel());
+    /// True if gathering right-hand sides is long enough to gain from more than one thread.
+    pub(super) fn is_global_step_long(&self) -> bool {
+        self.gather.entries.len() >= PARALLEL_ENTRIES
+    }
+
+    /// Projects `points` onto every constraint, on the current rayon pool if `is_parallel`. Returns `½ Σ s ‖A x − p‖²` if
+    /// `wants_energy`, else 0.
+    pub(super) fn local_step(
+        &mut self,
+        constraints: &ConstraintSet,
+        points: &[DVec3],
+        wants_energy: bool,
+        is_parallel: bool,
+    ) -> f64 {
+        let (chunks, stiffness) = (&self.chunks, &self.stiffness);
         let work = |i: usize, targets: &mut [DVec3], energy: &mut f64| {
             let Chunk { batch: index, first_slot, end_slot } = chunks[i];
             let (batch, slots) = (constraints.batch(index), first_slot..end_slot);
@@ -186,10 +201,9 @@ impl System {
 
     /// Solves for new points from the last projections, the `external` terms of the right-hand side (empty: none) and
     /// the current `points`, which the remedies for singular systems refer to. The result has one entry per point.
-    pub(super) fn global_step(&mut self, points: &[DVec3], external: &[DVec3]) -> &[DVec3] {
+    pub(super) fn global_step(&mut self, points: &[DVec3], external: &[DVec3], is_parallel: bool) -> &[DVec3] {
         let n = self.point_count;
-        let (gather, targets, proximal, is_parallel) =
-            (&self.gather, &self.targets, &self.proximal, self.is_parallel());
+        let (gather, targets, proximal) = (&self.gather, &self.targets, &self.proximal);
         let work = |chunk: usize, sums: &mut [DVec3], _: &mut f64| {
             for (point, sum) in (gather.bounds[chunk]..).zip(sums) {
                 *sum = external.get(point).copied().unwrap_or_default();

@@ -1,0 +1,72 @@
+//! Iterations allocate nothing.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::DVec3;
+use shapeop::constraints::types;
+use shapeop::solver::{SolveOptions, Solver};
+
+struct Counting;
+
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call is passed on to the system's allocator unchanged; counting touches no memory of the caller.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller keeps the contract of `alloc`, which is the same here.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps the contract of `dealloc`, which is the same here.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+#[test]
+fn between_the_second_and_the_last_iteration_nothing_is_allocated() {
+    let n = 12_u32;
+    let bump = |i: u32| (f64::from(i * 7919 % 101) / 101.0 - 0.5) * 0.2;
+    let points: Vec<DVec3> = (0..n * n)
+        .map(|i| DVec3::new(f64::from(i % n) + bump(i), f64::from(i / n) + bump(i + 3), bump(i + 5)))
+        .collect();
+    for is_dynamic in [false, true] {
+        let mut solver = Solver::new();
+        solver.set_thread_count(1);
+        solver.set_points(&points).unwrap();
+        for info in types() {
+            // Every type at its least number of indices, and as long as it may be.
+            let longest = info.greatest_indices.unwrap_or(20);
+            for corner in (0..n * (n - 2)).step_by(5) {
+                let corners = [corner, corner + 1, corner + n + 1, corner + n];
+                let short: Vec<u32> = corners.into_iter().cycle().take(info.least_indices).collect();
+                solver.add_constraint(info.name, &short, 1.0).unwrap();
+            }
+            let long: Vec<u32> = (0..longest as u32).collect();
+            solver.add_constraint(info.name, &long, 1.0).unwrap();
+        }
+        match is_dynamic {
+            true => solver.init_dynamic(1.0, 1.0, 0.1).unwrap(),
+            false => solver.init().unwrap(),
+        }
+        let mut counts = Vec::with_capacity(100);
+        let options = SolveOptions { max_iterations: 20, tolerance: 0.0, time_budget_seconds: 0.0 };
+        solver
+            .solve_until(&options, &mut |_| {
+                counts.push(ALLOCATIONS.load(Ordering::Relaxed));
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+        assert_eq!(counts.len(), 20);
+        assert_eq!(counts[19] - counts[1], 0, "allocations in 18 iterations, dynamic: {is_dynamic}");
+        let before = ALLOCATIONS.load(Ordering::Relaxed);
+        solver.solve(20).unwrap();
+        assert_eq!(ALLOCATIONS.load(Ordering::Relaxed) - before, 0, "allocations in a second solve");
+    }
+}

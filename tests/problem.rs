@@ -1,0 +1,132 @@
+//! The JSON form: what is written is read back, and what errs is refused with its place.
+
+use shapeop::error::Status;
+use shapeop::problem::{ForceKind, ForceSignature, Mode, Problem, Signature};
+
+fn sample() -> Problem {
+    Problem {
+        mode: Mode::Dynamic,
+        timestep: 0.1,
+        points: vec![[0.0; 3], [1.0, 0.1 + 0.2, -1e-300], [0.0, 1.0, 0.0], [f64::MAX, 0.0, 5e-324]],
+        constraints: vec![
+            Signature { type_name: "Plane".into(), indices: vec![0, 1, 2], weight: 2.5, scalars: None },
+            Signature {
+                type_name: "Closeness".into(),
+                indices: vec![1],
+                weight: 1.0,
+                scalars: Some(vec![1.0, 2.0, 3.0]),
+            },
+        ],
+        forces: vec![
+            ForceSignature { kind: ForceKind::Gravity, force: [0.0, 0.0, -9.81], id: None },
+            ForceSignature { kind: ForceKind::Vertex, force: [1.0, 0.0, 0.0], id: Some(2) },
+        ],
+        faces: vec![vec![0, 1, 2]],
+        edges: vec![[0, 1]],
+        ..Problem::default()
+    }
+}
+
+#[test]
+fn what_is_written_is_read_back_to_the_last_bit() {
+    let mut problem = sample();
+    problem.extra.insert("author".into(), "anyone".into());
+    let text = problem.to_json();
+    assert_eq!(Problem::from_json(&text).unwrap(), problem);
+    assert_eq!(Problem::from_json(&text).unwrap().to_json(), text);
+}
+
+#[test]
+fn points_alone_are_a_problem() {
+    let problem = Problem::from_json(r#"{"version": 1, "points": [[0, 0, 0]]}"#).unwrap();
+    assert_eq!((problem.mode, problem.masses, problem.settings.max_iterations), (Mode::Static, 1.0, 1000));
+}
+
+#[test]
+fn what_errs_is_refused_with_its_place() {
+    let points = r#""version": 1, "points": [[0,0,0],[1,0,0],[0,1,0]]"#;
+    let cases = [
+        (
+            format!(r#"{{{points}, "constraints": [{{"type": "Plane", "indices": [0, 1, 5000]}}]}}"#),
+            "constraints[0].indices[2]: 5000 is out of range for 3 points",
+            Status::IndexOutOfRange,
+        ),
+        (
+            format!(r#"{{{points}, "constraints": [{{"type": "Plain", "indices": [0, 1, 2]}}]}}"#),
+            "constraints[0].type: \"Plain\" is not one of",
+            Status::InvalidConstraintType,
+        ),
+        (
+            format!(r#"{{{points}, "constraints": [{{"type": "Plane", "indices": [0, 1]}}]}}"#),
+            "constraints[0].indices: expected at least 3",
+            Status::InvalidArgumentLength,
+        ),
+        (
+            format!(r#"{{{points}, "constraints": [{{"type": "Plane", "indices": [0, 1, -2]}}]}}"#),
+            "constraints[0].indices[2]: invalid value: integer `-2`",
+            Status::InvalidInput,
+        ),
+        (
+            format!(r#"{{{points}, "constraints": [{{"type": "Plane", "indices": [0, 1, 2], "wieght": 2}}]}}"#),
+            "constraints[0].wieght: unknown field `wieght`",
+            Status::InvalidInput,
+        ),
+        (
+            format!(r#"{{{points}, "constraints": [{{"type": "Plane", "indices": [0, 1, 2], "weight": -2}}]}}"#),
+            "constraints[0].weight: expected at least 0, found -2",
+            Status::InvalidValue,
+        ),
+        (
+            format!(
+                r#"{{{points}, "constraints": [{{"type": "EdgeStrain", "indices": [0, 1], "scalars": [0, 1, 1]}}]}}"#
+            ),
+            "constraints[0].scalars.length: expected a number above 0, found 0",
+            Status::InvalidValue,
+        ),
+        (
+            format!(r#"{{{points}, "constraints": [{{"type": "EdgeStrain", "indices": [0, 1], "scalars": [1, 1]}}]}}"#),
+            "constraints[0].scalars: expected 3",
+            Status::InvalidArgumentLength,
+        ),
+        (
+            format!(r#"{{{points}, "forces": [{{"kind": "vertex", "force": [0, 0, 1], "id": 9}}]}}"#),
+            "forces[0].id: 9 is out of range for 3 points",
+            Status::IndexOutOfRange,
+        ),
+        (
+            format!(r#"{{{points}, "forces": [{{"kind": "vertex", "force": [0, 0, 1]}}]}}"#),
+            "forces[0].id: expected the index of the point",
+            Status::InvalidValue,
+        ),
+        (
+            format!(r#"{{{points}, "forces": [{{"kind": "wind", "force": [0, 0, 1]}}]}}"#),
+            "forces[0].kind: unknown variant `wind`",
+            Status::InvalidInput,
+        ),
+        (
+            format!(r#"{{{points}, "faces": [[0, 1, 2], [0, 1, 3]]}}"#),
+            "faces[1][2]: 3 is out of range for 3 points",
+            Status::IndexOutOfRange,
+        ),
+        (format!(r#"{{{points}, "masses": 0}}"#), "masses: expected a number above 0, found 0", Status::InvalidValue),
+        (
+            format!(r#"{{{points}, "settings": {{"tolerance": -1}}}}"#),
+            "settings.tolerance: expected at least 0",
+            Status::InvalidValue,
+        ),
+        (r#"{"version": 2, "points": []}"#.into(), "version: expected 1, found 2", Status::InvalidValue),
+        (r#"{"version": 1, "points": [[0,0]]}"#.into(), "points[0]: invalid length 2", Status::InvalidInput),
+        (
+            r#"{"version": 1, "points": [[0,0,1e999]]}"#.into(),
+            "points[0][2]: number out of range",
+            Status::InvalidInput,
+        ),
+        (r#"{"version": 1, "points": []} trailing"#.into(), "trailing characters at line 1", Status::InvalidInput),
+        (r#"{"points": []}"#.into(), "missing field `version`", Status::InvalidInput),
+    ];
+    for (text, expected, status) in cases {
+        let error = Problem::from_json(&text).unwrap_err();
+        assert!(error.to_string().starts_with(expected), "{text}\n  gave     {error}\n  expected {expected}");
+        assert_eq!(error.status(), status, "{text}");
+    }
+}
