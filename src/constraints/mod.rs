@@ -9,6 +9,7 @@
 //! To add a type: write its file, with one struct that implements [`Constraint`], and add its line to the registry.
 
 mod batch;
+mod deformation;
 #[cfg(test)]
 mod laws;
 mod set;
@@ -237,9 +238,17 @@ macro_rules! registry {
 
 registry! {
     edge_strain::EdgeStrain,
+    triangle_strain::TriangleStrain,
+    tetrahedron_strain::TetrahedronStrain,
+    area::Area,
+    volume::Volume,
     closeness::Closeness,
     plane::Plane,
 }
+
+/// The scalars of the types that bound a ratio to the rest state; [`check_range`] holds them to their domain.
+const RANGE: [Scalar; 2] =
+    [Scalar { name: "range_min", default: Some(1.0) }, Scalar { name: "range_max", default: Some(1.0) }];
 
 /// Refuses a number that is not above 0; it was checked to be finite.
 fn check_positive(name: &str, value: f64) -> Result<()> {
