@@ -181,7 +181,8 @@ mod tests {
     #[test]
     fn four_linearised_steps_nearly_reach_the_product() {
         let moved = move_product_into([1.5, 1.2], [1.0, 1.0]);
-        assert!((moved[0] * moved[1] - 1.0).abs() < 1e-6, "{moved:?}");
+        // The products after the four steps: 1.0846, 1.0007, 0.99991, 0.999993.
+        assert!((moved[0] * moved[1] - 1.0).abs() < 1e-5, "{moved:?}");
         assert_eq!(move_product_into([1.1, 0.95], [1.0, 1.1]), [1.1, 0.95]);
         assert_eq!(move_product_into([0.0, 0.0, 0.0], [1.0, 1.0]), [0.0; 3]);
     }
