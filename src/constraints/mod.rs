@@ -13,6 +13,7 @@ mod deformation;
 #[cfg(test)]
 mod laws;
 mod set;
+mod shape_fit;
 mod stencil;
 
 pub(crate) use batch::Batch;
@@ -242,8 +243,19 @@ registry! {
     tetrahedron_strain::TetrahedronStrain,
     area::Area,
     volume::Volume,
+    bending::Bending,
     closeness::Closeness,
+    line::Line,
     plane::Plane,
+    circle::Circle,
+    sphere::Sphere,
+    similarity::Similarity,
+    rigid::Rigid,
+    rectangle::Rectangle,
+    parallelogram::Parallelogram,
+    laplacian::Laplacian,
+    laplacian_displacement::LaplacianDisplacement,
+    angle::Angle,
 }
 
 /// The scalars of the types that bound a ratio to the rest state; [`check_range`] holds them to their domain.

@@ -1,0 +1,159 @@
+//! Angle: the angle at a point between the directions to two others stays within a range.
+//!
+//! Set: edges `e₁ = x₁ − x₀`, `e₂ = x₂ − x₀` with `min ≤ ∠(e₁, e₂) ≤ max`. Rows: the two edges. Projection: if the angle is too
+//! large by `η`, both edges turn towards each other in their plane, by `θ` and `η − θ`; if too small, away from each other. Each
+//! becomes its foot on its new direction, so the cost is `a sin²θ + b sin²(η − θ)` with `a = ‖e₁‖²`, `b = ‖e₂‖²`, least at
+//! `θ = ½ atan2(b sin 2η, a + b cos 2η)`, kept within `[0, η]`. Nearest for corrections below a right angle; beyond, the nearest
+//! element collapses the shorter edge, parity prescribes the formula, and an edge turned by more than a right angle has its
+//! foot on the far side. The type therefore calls itself approximate, and plain iterations can raise the energy slightly.
+//! Collinear edges span no plane: they are left. Scalars: `min_rad`, `max_rad` (0, π), within `[0, π]`. Violation: the distance of
+//! the angle from the range in rad; an edge of no length has every angle. Nothing can degenerate.
+//! Source: Deng et al. 2015, section 3.3.2, with atan2 for the paper's arctan.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::{Constraint, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo};
+use crate::error::{Error, Result, Status};
+
+/// Edges are collinear where `1 − |cos|` is at or below this, as libShapeOp has it.
+const COLLINEAR: f64 = 1e-14;
+
+/// One Angle constraint; it has no rest state.
+#[derive(Clone)]
+pub struct Angle;
+
+/// The foot of `edge` on the direction that lies by `turn` from it towards the unit vector `across`, which is orthogonal to it.
+fn turned(edge: DVec3, across: DVec3, turn: f64) -> DVec3 {
+    let length = edge.length();
+    length * turn.cos() * (turn.cos() * (edge / length) + turn.sin() * across)
+}
+
+/// The angle between two vectors in rad, accurate also near 0 and π; 0 if one has no length.
+fn angle_between(e: DVec3, f: DVec3) -> f64 {
+    e.cross(f).length().atan2(e.dot(f))
+}
+
+impl Constraint for Angle {
+    const INFO: TypeInfo = TypeInfo {
+        name: "Angle",
+        help: "keeps the angle at a point between two others within a range",
+        least_indices: 3,
+        greatest_indices: Some(3),
+        index_names: &["apex", "first", "second"],
+        scalars: Scalars::Named(&[
+            Scalar { name: "min_rad", default: Some(0.0) },
+            Scalar { name: "max_rad", default: Some(PI) },
+        ]),
+        rows: Rows::Linear(2),
+        projection: Projection::Approximate,
+        violation_unit: "rad",
+        energy_scale_power: 2,
+        edited_as: None,
+    };
+
+    fn at_rest(_x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
+        scalars.extend([0.0, PI]);
+        Self
+    }
+
+    fn check_scalars(scalars: &[f64]) -> Result<()> {
+        let [min, max] = [scalars[0], scalars[1]];
+        if 0.0 <= min && min <= max && max <= PI {
+            return Ok(());
+        }
+        let reason = format!("expected 0 <= min_rad <= max_rad <= pi, found [{min}, {max}]");
+        Err(Error::new(Status::InvalidValue, reason).at("range"))
+    }
+
+    fn rows(&self, _scalars: &[f64], coefficients: &mut [f64]) {
+        coefficients.copy_from_slice(&[-1.0, 1.0, 0.0, -1.0, 0.0, 1.0]);
+    }
+
+    fn project(&self, scalars: &[f64], x: Stencil<'_>, targets: &mut [DVec3]) {
+        let [apex, first, second] = x.array();
+        let (e, f) = (first - apex, second - apex);
+        targets.copy_from_slice(&[e, f]);
+        let angle = angle_between(e, f);
+        let excess = angle - angle.clamp(scalars[0], scalars[1]);
+        let (Some(e_unit), Some(f_unit)) = (e.try_normalize(), f.try_normalize()) else { return };
+        let cosine = e_unit.dot(f_unit);
+        if excess == 0.0 || 1.0 - cosine.abs() <= COLLINEAR {
+            return;
+        }
+        let (Some(to_f), Some(to_e)) =
+            ((f_unit - cosine * e_unit).try_normalize(), (e_unit - cosine * f_unit).try_normalize())
+        else {
+            return;
+        };
+        // Relative lengths, so that their squares stay in range.
+        let ratio = (f.length() / e.length()).powi(2);
+        let correction = excess.abs();
+        let best = 0.5 * (ratio * (2.0 * correction).sin()).atan2(1.0 + ratio * (2.0 * correction).cos());
+        let turn = best.clamp(0.0, correction).copysign(excess);
+        targets[0] = turned(e, to_f, turn);
+        targets[1] = turned(f, to_e, excess - turn);
+    }
+
+    fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {
+        let [apex, first, second] = x.array();
+        let (e, f) = (first - apex, second - apex);
+        if e == DVec3::ZERO || f == DVec3::ZERO {
+            return 0.0;
+        }
+        let angle = angle_between(e, f);
+        (angle - angle.clamp(scalars[0], scalars[1])).abs()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_edges_share_the_correction() {
+        // A right angle that may be 60° at most: each edge turns by 15° and keeps cos 15° of its length.
+        let points = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        let stencil = Stencil::absolute(&points, &[0, 1, 2]);
+        let mut targets = [DVec3::ZERO; 2];
+        let range = [0.0, 60_f64.to_radians()];
+        Angle.project(&range, stencil, &mut targets);
+        let (sin, cos) = 15_f64.to_radians().sin_cos();
+        assert!((targets[0] - cos * DVec3::new(cos, sin, 0.0)).length() < 1e-15);
+        assert!((targets[1] - cos * DVec3::new(sin, cos, 0.0)).length() < 1e-15);
+        assert!((Angle.violation(&range, stencil) - 30_f64.to_radians()).abs() < 1e-15);
+        // At least 120°: away from each other.
+        Angle.project(&[120_f64.to_radians(), PI], stencil, &mut targets);
+        assert!((targets[0] - cos * DVec3::new(cos, -sin, 0.0)).length() < 1e-15);
+    }
+
+    /// The cost over all splits of the correction, by brute force.
+    #[test]
+    fn below_a_right_angle_no_split_costs_less() {
+        let points = [DVec3::ZERO, 3.0 * DVec3::X, DVec3::new(0.2, 0.7, 0.0)];
+        let stencil = Stencil::absolute(&points, &[0, 1, 2]);
+        for bound in [0.1, 0.5, 1.0, 1.2] {
+            let mut targets = [DVec3::ZERO; 2];
+            Angle.project(&[0.0, bound], stencil, &mut targets);
+            assert!((angle_between(targets[0], targets[1]) - bound).abs() < 1e-14);
+            let cost = targets[0].distance_squared(points[1]) + targets[1].distance_squared(points[2]);
+            let correction = angle_between(points[1], points[2]) - bound;
+            for i in 0..=1000 {
+                let turn = correction * f64::from(i) / 1000.0;
+                let other = 9.0 * turn.sin().powi(2) + points[2].length_squared() * (correction - turn).sin().powi(2);
+                assert!(cost <= other + 1e-15, "bound {bound}: a split at {turn} costs less");
+            }
+        }
+    }
+
+    #[test]
+    fn collinear_edges_are_left() {
+        let points = [DVec3::ZERO, DVec3::X, -2.0 * DVec3::X];
+        let stencil = Stencil::absolute(&points, &[0, 1, 2]);
+        let mut targets = [DVec3::ZERO; 2];
+        Angle.project(&[0.5, 1.0], stencil, &mut targets);
+        assert_eq!(targets, [points[1], points[2]]);
+        assert!((Angle.violation(&[0.5, 1.0], stencil) - (PI - 1.0)).abs() < 1e-15);
+    }
+}

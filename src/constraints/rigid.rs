@@ -1,0 +1,81 @@
+//! Rigid: points congruent to the nearest of some template shapes.
+//!
+//! Set: every template, moved and turned, in any cyclic or mirrored order of its vertices. Rows: centred. Projection: the best
+//! of all candidates, see `shape_fit`; nearest. Where two candidates tie, the first is taken. Scalars: `3 k m` coordinates of `m`
+//! templates of `k` points, `x₀ y₀ z₀ x₁ …`, in model units; by default one, the points at creation. Violation: the largest
+//! distance of a point from its projection, in model units. Degenerate where all templates are single points: it then
+//! draws its points together. Source: Bouaziz et al. 2012, section 3.2.
+
+use glam::DVec3;
+
+use super::shape_fit::{self, Scale};
+use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
+
+/// One Rigid constraint. Its templates are its scalars; it keeps the number of points.
+#[derive(Clone)]
+pub struct Rigid {
+    point_count: usize,
+}
+
+impl Constraint for Rigid {
+    const INFO: TypeInfo = TypeInfo {
+        name: "Rigid",
+        help: "keeps points congruent to the nearest of some shapes, by default the one at creation",
+        least_indices: 1,
+        greatest_indices: None,
+        index_names: &["point"],
+        scalars: Scalars::Shapes,
+        rows: Rows::Centred,
+        projection: Projection::Nearest,
+        violation_unit: "model units",
+        energy_scale_power: 2,
+        edited_as: Some("Similarity"),
+    };
+
+    fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
+        scalars.extend(x.iter().flat_map(|point| point.to_array()));
+        Self { point_count: x.len() }
+    }
+
+    fn project(&self, scalars: &[f64], x: Stencil<'_>, targets: &mut [DVec3]) {
+        shape_fit::project(scalars, x, Scale::Fixed, |j, target| targets[j] = target);
+    }
+
+    fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {
+        shape_fit::violation(scalars, x, Scale::Fixed)
+    }
+
+    fn is_degenerate(&self, scalars: &[f64]) -> bool {
+        shape_fit::is_degenerate(scalars, self.point_count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretched_edge_returns_to_its_length() {
+        let rest = [DVec3::ZERO, 2.0 * DVec3::X];
+        let mut scalars = Vec::new();
+        let rigid = Rigid::at_rest(Stencil::centred(&rest, &[0, 1]), &mut scalars);
+        let pulled = [DVec3::ZERO, 5.0 * DVec3::Z];
+        let stencil = Stencil::centred(&pulled, &[0, 1]);
+        let mut targets = [DVec3::ZERO; 2];
+        rigid.project(&scalars, stencil, &mut targets);
+        assert!((targets[0] + DVec3::Z).length() < 1e-15 && (targets[1] - DVec3::Z).length() < 1e-15);
+        assert!((rigid.violation(&scalars, stencil) - 1.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_nearer_of_two_templates_is_taken() {
+        let points = [[0.0, 0.0, 0.0], [2.1, 0.0, 0.0], [0.0, 1.9, 0.0]].map(DVec3::from);
+        let small = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let large = small.map(|coordinate| 2.0 * coordinate);
+        let stencil = Stencil::centred(&points, &[0, 1, 2]);
+        let rigid = Rigid::at_rest(stencil, &mut Vec::new());
+        let both = [small, large].concat();
+        assert!(rigid.violation(&both, stencil) < 0.2);
+        assert_eq!(rigid.violation(&both, stencil), rigid.violation(&large, stencil));
+    }
+}
