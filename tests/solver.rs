@@ -105,7 +105,8 @@ fn rows_that_leave_more_than_translations_free_change_the_points_least() {
     let image = 0.5 * (left + right) - apex;
     for (i, factor) in [-1.0, 2.0, 2.0].into_iter().enumerate() {
         let expected = DVec3::from(start[i]) - factor / 3.0 * image;
-        assert_near(solver.points()[i], expected.to_array(), 1e-9);
+        // A proximal step loses some 1e-10 of the model's size along the free motions, in each of 20 iterations.
+        assert_near(solver.points()[i], expected.to_array(), 1e-8);
     }
     // A force along a is resisted; one that turns the neighbours about the centre is not.
     let vertical = |solver: &mut Solver, forces: [f64; 3]| -> Vec<_> {

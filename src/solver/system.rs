@@ -9,8 +9,9 @@
 //! - a point with a zero row keeps its place;
 //! - a component that nothing holds against translation has its first point held while solving, and is then moved back
 //!   to where its mean was. As the right-hand side has no component along a free translation, this is exact;
-//! - where that is not enough (rows that leave more than translations free, such as a lone Bending), every row gains a
-//!   small part of its diagonal as a pull towards the current position: a proximal step, with the same fixed points.
+//! - where that is not enough (rows that leave more than translations free, such as a lone Bending), no point is held, and
+//!   every row gains a small part of its diagonal as a pull towards the current position: a proximal step, with the same
+//!   fixed points. A held point would decide along which free motion the others move.
 
 use std::time::Instant;
 
@@ -66,7 +67,7 @@ struct Chunk {
 struct FreeComponent {
     /// Ascending; the first is held while solving.
     points: Vec<u32>,
-    /// What holds it: as much as its own diagonal entry.
+    /// What holds it: as much as its own diagonal entry; 0 where a proximal step takes care of translations too.
     held_stiffness: f64,
 }
 
@@ -279,7 +280,7 @@ impl System {
 
     /// Solves with the right-hand sides in `solution` and undoes what holding the free components changed.
     fn solve_in_place(&mut self, points: &[DVec3]) {
-        for component in &self.free_components {
+        for component in self.free_components.iter().filter(|component| component.held_stiffness > 0.0) {
             let held = component.points[0] as usize;
             self.solution[held] += component.held_stiffness * points[held];
         }
@@ -287,7 +288,7 @@ impl System {
             self.solution[point as usize] = points[point as usize];
         }
         self.factor.solve(&self.analysis, &mut self.solution);
-        for component in &self.free_components {
+        for component in self.free_components.iter().filter(|component| component.held_stiffness > 0.0) {
             let (solution, count) = (&mut self.solution, component.points.len() as f64);
             let change = |&point: &u32| points[point as usize] - solution[point as usize];
             let shift = component.points.iter().map(change).sum::<DVec3>() / count;
@@ -323,6 +324,12 @@ impl System {
         self.factor.factorise(&self.analysis, &self.matrix)?;
         if !self.factor.is_singular() {
             return Ok(());
+        }
+        for component in &mut self.free_components {
+            let diagonal = self.matrix.diagonal_mut(component.points[0] as usize);
+            // As it was: held points have twice their diagonal.
+            *diagonal *= 0.5;
+            component.held_stiffness = 0.0;
         }
         self.proximal = (0..self.point_count).map(|i| PROXIMAL * self.matrix.diagonal(i)).collect();
         for &point in &self.unconstrained {
