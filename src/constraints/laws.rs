@@ -1,1 +1,379 @@
 //! The laws that every type keeps, checked over the whole registry.
+//!
+//! A law is a function of the type; `for_each_type!` calls it for each. Samples come from a fixed stream of numbers, so a
+//! failure repeats; its message names the type and the sample.
+
+use glam::{DQuat, DVec3};
+
+use super::{Constraint, ConstraintSet, NewConstraints, Projection, Rows, Scalars, Stencil, TypeInfo, for_each_type};
+use crate::error::Status;
+
+/// Samples per law and type.
+const SAMPLES: u64 = 300;
+
+/// Round-off of a projection of points about 1 in size; the worst found is about 1e-12.
+const ROUND_OFF: f64 = 1e-10;
+
+/// A fixed stream of numbers in `[0, 1)`.
+struct Stream(u64);
+
+impl Stream {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        2.0 * DVec3::new(self.next(), self.next(), self.next()) - 1.0
+    }
+
+    fn vectors(&mut self, count: usize) -> Vec<DVec3> {
+        (0..count).map(|_| self.vector()).collect()
+    }
+}
+
+/// One constraint on its own points, `0, 1, …`.
+#[derive(Clone)]
+struct Sample<T> {
+    constraint: T,
+    scalars: Vec<f64>,
+    indices: Vec<u32>,
+}
+
+impl<T: Constraint> Sample<T> {
+    fn at_rest(rest: &[DVec3]) -> Self {
+        let indices: Vec<u32> = (0..rest.len() as u32).collect();
+        let mut scalars = Vec::new();
+        let constraint = T::at_rest(stencil(T::INFO.rows, rest, &indices), &mut scalars);
+        Self { constraint, scalars, indices }
+    }
+
+    /// At rest where `rest` is, with other scalars than the defaults.
+    fn random(rest: &[DVec3], stream: &mut Stream) -> Self {
+        let mut sample = Self::at_rest(rest);
+        match T::INFO.scalars {
+            Scalars::None => {}
+            Scalars::Shapes => {
+                sample.scalars = stream.vectors(2 * rest.len()).iter().flat_map(DVec3::to_array).collect()
+            }
+            Scalars::Named(_) => {
+                let defaults = sample.scalars.clone();
+                sample.scalars = (0..1000)
+                    .map(|_| defaults.iter().map(|d| d * (0.5 + stream.next()) + 0.5 * stream.next()).collect())
+                    .find(|scalars: &Vec<f64>| T::check_scalars(scalars).is_ok())
+                    .unwrap_or(defaults);
+            }
+        }
+        sample
+    }
+
+    fn project(&self, x: &[DVec3]) -> Vec<DVec3> {
+        let mut targets = vec![DVec3::NAN; self.row_count()];
+        self.constraint.project(&self.scalars, stencil(T::INFO.rows, x, &self.indices), &mut targets);
+        targets
+    }
+
+    fn violation(&self, x: &[DVec3]) -> f64 {
+        self.constraint.violation(&self.scalars, stencil(T::INFO.rows, x, &self.indices))
+    }
+
+    fn row_count(&self) -> usize {
+        match T::INFO.rows {
+            Rows::Centred => self.indices.len(),
+            Rows::Linear(row_count) => row_count,
+        }
+    }
+
+    fn rows(&self) -> Vec<f64> {
+        let mut rows = vec![0.0; self.row_count() * self.indices.len()];
+        match T::INFO.rows {
+            Rows::Centred => {
+                let k = self.indices.len();
+                for (i, entry) in rows.iter_mut().enumerate() {
+                    *entry = f64::from(u8::from(i / k == i % k)) - 1.0 / k as f64;
+                }
+            }
+            Rows::Linear(_) => self.constraint.rows(&self.scalars, &mut rows),
+        }
+        rows
+    }
+
+    /// `A x`.
+    fn image(&self, x: &[DVec3]) -> Vec<DVec3> {
+        self.rows().chunks_exact(x.len()).map(|row| row.iter().zip(x).map(|(&a, &point)| a * point).sum()).collect()
+    }
+
+    /// `Aᵀ(A x − P(x))`.
+    fn pull(&self, x: &[DVec3]) -> Vec<DVec3> {
+        let (rows, image, targets) = (self.rows(), self.image(x), self.project(x));
+        let gaps = || image.iter().zip(&targets).map(|(image, target)| *image - *target);
+        (0..x.len()).map(|i| gaps().enumerate().map(|(row, gap)| rows[row * x.len() + i] * gap).sum()).collect()
+    }
+
+    /// Points near `x` whose image is `targets`: `x + Aᵀ (A Aᵀ)⁻¹ (targets − A x)`.
+    fn lift(&self, x: &[DVec3], targets: &[DVec3]) -> Vec<DVec3> {
+        if T::INFO.rows == Rows::Centred {
+            return targets.to_vec();
+        }
+        let (rows, k, count) = (self.rows(), x.len(), targets.len());
+        let dot = |a: usize, b: usize| (0..k).map(|i| rows[a * k + i] * rows[b * k + i]).sum::<f64>();
+        let mut gram: Vec<Vec<f64>> = (0..count).map(|a| (0..count).map(|b| dot(a, b)).collect()).collect();
+        let mut rest: Vec<DVec3> = targets.iter().zip(self.image(x)).map(|(&target, image)| target - image).collect();
+        for pivot in 0..count {
+            for row in (0..count).filter(|&row| row != pivot) {
+                let factor = gram[row][pivot] / gram[pivot][pivot];
+                for column in 0..count {
+                    gram[row][column] -= factor * gram[pivot][column];
+                }
+                let step = factor * rest[pivot];
+                rest[row] -= step;
+            }
+        }
+        let along: Vec<DVec3> = (0..count).map(|row| rest[row] / gram[row][row]).collect();
+        (0..k).map(|i| x[i] + (0..count).map(|row| rows[row * k + i] * along[row]).sum::<DVec3>()).collect()
+    }
+}
+
+fn stencil<'a>(rows: Rows, x: &'a [DVec3], indices: &'a [u32]) -> Stencil<'a> {
+    match rows {
+        Rows::Centred => Stencil::centred(x, indices),
+        Rows::Linear(_) => Stencil::absolute(x, indices),
+    }
+}
+
+/// Rest points and points of sample `seed`, as many as the type takes.
+fn points(info: &TypeInfo, seed: u64) -> (Vec<DVec3>, Vec<DVec3>, Stream) {
+    let mut stream = Stream(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    stream.next();
+    let most = info.greatest_indices.unwrap_or(info.least_indices + 4);
+    let count = info.least_indices + (stream.next() * (most - info.least_indices + 1) as f64) as usize;
+    let (rest, x) = (stream.vectors(count), stream.vectors(count));
+    (rest, x, stream)
+}
+
+fn squared_distance(a: &[DVec3], b: &[DVec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.distance_squared(*b)).sum()
+}
+
+/// The size of targets, for relative bounds: rows of thin rest triangles magnify.
+fn size(targets: &[DVec3]) -> f64 {
+    1.0 + targets.iter().map(|target| target.length()).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_registry_says_what_the_types_do() {
+    fn law<T: Constraint>() {
+        let (rest, _, _) = points(&T::INFO, 1);
+        let sample = Sample::<T>::at_rest(&rest);
+        let name = T::INFO.name;
+        T::INFO.check_index_count(rest.len()).unwrap();
+        match T::INFO.scalars {
+            Scalars::None => assert!(sample.scalars.is_empty(), "{name}"),
+            Scalars::Named(scalars) => {
+                assert_eq!(sample.scalars.len(), scalars.len(), "{name}");
+                for (scalar, value) in scalars.iter().zip(&sample.scalars) {
+                    assert_eq!(scalar.default.unwrap_or(*value), *value, "{name}: {}", scalar.name);
+                }
+                T::check_scalars(&sample.scalars).unwrap();
+            }
+            Scalars::Shapes => assert_eq!(sample.scalars.len(), 3 * rest.len(), "{name}"),
+        }
+        assert!(!sample.constraint.is_degenerate(&sample.scalars), "{name}");
+        assert!(sample.constraint.measure(&sample.scalars) > 0.0, "{name}");
+        assert!(!T::INFO.help.is_empty() && !T::INFO.violation_unit.is_empty() && !T::INFO.index_names.is_empty());
+    }
+    for_each_type!(law);
+}
+
+#[test]
+fn what_is_projected_is_feasible_and_stays() {
+    fn law<T: Constraint>() {
+        for seed in 0..SAMPLES {
+            let (rest, x, mut stream) = points(&T::INFO, seed);
+            let sample = Sample::<T>::random(&rest, &mut stream);
+            let targets = sample.project(&x);
+            let feasible = sample.lift(&x, &targets);
+            let (before, after) = (sample.violation(&x), sample.violation(&feasible));
+            let bound = ROUND_OFF * (size(&sample.image(&x)) + size(&targets));
+            let name = T::INFO.name;
+            if T::INFO.projection == Projection::Approximate {
+                assert!(after <= before + bound, "{name}, sample {seed}: violation {before} became {after}");
+                continue;
+            }
+            assert!(after <= bound, "{name}, sample {seed}: violation {before} became {after}");
+            let again = sample.project(&feasible);
+            let moved = squared_distance(&again, &sample.image(&feasible)).sqrt();
+            assert!(moved <= bound, "{name}, sample {seed}: moves by {moved} again");
+        }
+    }
+    for_each_type!(law);
+}
+
+#[test]
+fn no_feasible_configuration_is_nearer_than_the_nearest() {
+    fn law<T: Constraint>() {
+        if T::INFO.projection != Projection::Nearest {
+            return;
+        }
+        for seed in 0..SAMPLES {
+            let (rest, x, mut stream) = points(&T::INFO, seed);
+            let sample = Sample::<T>::random(&rest, &mut stream);
+            let (image, targets) = (sample.image(&x), sample.project(&x));
+            let distance = squared_distance(&image, &targets).sqrt();
+            for spread in [1.0, 0.3, 0.1, 0.01, 1e-4] {
+                for _ in 0..10 {
+                    // Feasible neighbours of the projection, some near and some far.
+                    let moved: Vec<DVec3> =
+                        targets.iter().map(|t| *t + spread * size(&targets) * stream.vector()).collect();
+                    let other = sample.project(&sample.lift(&x, &moved));
+                    let other_distance = squared_distance(&image, &other).sqrt();
+                    assert!(
+                        distance <= other_distance + ROUND_OFF * size(&targets),
+                        "{}, sample {seed}: {other:?} at {other_distance} is nearer than {targets:?} at {distance}",
+                        T::INFO.name
+                    );
+                }
+            }
+        }
+    }
+    for_each_type!(law);
+}
+
+#[test]
+fn at_rest_without_violation_rows_and_projection_agree() {
+    fn law<T: Constraint>() {
+        let mut count = 0;
+        for seed in 0..SAMPLES {
+            let (rest, _, _) = points(&T::INFO, seed);
+            // A rest state that has no violation may be any; types without one are taken to a feasible one.
+            let sample = Sample::<T>::at_rest(&rest);
+            let x = if sample.violation(&rest) < ROUND_OFF { rest } else { sample.lift(&rest, &sample.project(&rest)) };
+            if sample.violation(&x) < ROUND_OFF {
+                let (image, targets) = (sample.image(&x), sample.project(&x));
+                let gap = squared_distance(&image, &targets).sqrt();
+                assert!(
+                    gap <= 10.0 * ROUND_OFF * size(&image),
+                    "{}, sample {seed}: they differ by {gap}",
+                    T::INFO.name
+                );
+                count += 1;
+            }
+        }
+        assert!(count > SAMPLES / 2, "{}: only {count} samples without violation", T::INFO.name);
+    }
+    for_each_type!(law);
+}
+
+#[test]
+fn projections_turn_and_scale_with_the_model() {
+    fn law<T: Constraint>() {
+        for seed in 0..SAMPLES {
+            let (rest, x, mut stream) = points(&T::INFO, seed);
+            let (turn, shift) = (DQuat::from_scaled_axis(3.0 * stream.vector()), stream.vector());
+            let scale = 10_f64.powf(12.0 * stream.next() - 6.0);
+            let sample = Sample::<T>::at_rest(&rest);
+            let moved = |points: &[DVec3]| points.iter().map(|&p| scale * (turn * p + shift)).collect::<Vec<_>>();
+            let other = Sample::<T>::at_rest(&moved(&rest));
+            let energy = |sample: &Sample<T>, x: &[DVec3]| {
+                0.5 * sample.constraint.measure(&sample.scalars)
+                    * squared_distance(&sample.image(x), &sample.project(x))
+            };
+            let name = T::INFO.name;
+            let (found, expected) =
+                (energy(&other, &moved(&x)), energy(&sample, &x) * scale.powi(T::INFO.energy_scale_power));
+            let reference = sample.constraint.measure(&sample.scalars) * size(&sample.image(&x)).powi(2);
+            let bound = ROUND_OFF * reference * scale.powi(T::INFO.energy_scale_power);
+            assert!(
+                (found - expected).abs() <= bound,
+                "{name}, sample {seed}, scale {scale:e}: {found} is not {expected}"
+            );
+            // What a constraint pulls at its points, `Aᵀ(A x − P)`, turns with the model.
+            let (here, there) = (sample.pull(&x), other.pull(&moved(&x)));
+            let length = |pull: &[DVec3]| pull.iter().map(|p| p.length_squared()).sum::<f64>().sqrt();
+            let factor = length(&there) / length(&here);
+            if length(&here) > 1e-6 {
+                for (h, t) in here.iter().zip(&there) {
+                    let off = (turn * *h - *t / factor).length();
+                    assert!(off <= 1e-7 * length(&here), "{name}, sample {seed}: turned otherwise by {off}");
+                }
+            }
+        }
+    }
+    for_each_type!(law);
+}
+
+#[test]
+fn whatever_is_finite_stays_finite() {
+    fn law<T: Constraint>() {
+        for seed in 0..20 {
+            let (rest, _, mut stream) = points(&T::INFO, seed);
+            let k = rest.len();
+            let (a, b) = (stream.vector(), stream.vector());
+            let kinds: [Vec<DVec3>; 6] = [
+                vec![DVec3::ZERO; k],
+                vec![a; k],
+                (0..k).map(|i| a + i as f64 * b).collect(),
+                (0..k).map(|i| a + (i % 2) as f64 * b).collect(),
+                (0..k).map(|i| DVec3::new((i % 3) as f64, (i / 3) as f64, 0.0)).collect(),
+                rest,
+            ];
+            let scales = [1.0, 1e9, 1e-9];
+            let scaled: Vec<Vec<DVec3>> =
+                kinds.iter().flat_map(|kind| scales.map(|s| kind.iter().map(|point| s * *point).collect())).collect();
+            for rest in &scaled {
+                let sample = Sample::<T>::at_rest(rest);
+                let measure = sample.constraint.measure(&sample.scalars);
+                assert!(measure.is_finite() && measure >= 0.0, "{}: measure {measure} of {rest:?}", T::INFO.name);
+                assert!(sample.rows().iter().all(|a| a.is_finite()), "{}: rows of {rest:?}", T::INFO.name);
+                for x in &scaled {
+                    let (targets, violation) = (sample.project(x), sample.violation(x));
+                    let is_finite = targets.iter().all(|target| target.is_finite()) && violation.is_finite();
+                    assert!(is_finite && violation >= 0.0, "{}: rest {rest:?}, x {x:?}: {targets:?}", T::INFO.name);
+                }
+            }
+        }
+    }
+    for_each_type!(law);
+}
+
+#[test]
+fn wrong_scalars_are_refused_and_change_nothing() {
+    fn law<T: Constraint>() {
+        let (rest, _, _) = points(&T::INFO, 3);
+        let indices: Vec<u32> = (0..rest.len() as u32).collect();
+        let mut set = ConstraintSet::default();
+        let new = NewConstraints {
+            type_name: T::INFO.name,
+            indices: &indices,
+            counts: &[indices.len()],
+            weights: &[1.0],
+            scalars: &[],
+            scalar_counts: &[],
+        };
+        let id = set.add(&rest, new, |_| String::new()).unwrap();
+        let before = set.get(id).unwrap().scalars.to_vec();
+        let mut refused = |scalars: &[f64], status: Status| {
+            let error = set.edit(T::INFO.name, id, scalars).unwrap_err();
+            assert_eq!(error.status(), status, "{}: {scalars:?}: {error}", T::INFO.name);
+            assert_eq!(set.get(id).unwrap().scalars, before, "{}", T::INFO.name);
+        };
+        if T::INFO.scalars == Scalars::None {
+            refused(&[], Status::InvalidConstraintType);
+            refused(&[1.0], Status::InvalidConstraintType);
+            return;
+        }
+        refused(&[&before[..], &[1.0]].concat(), Status::InvalidArgumentLength);
+        refused(&before[1..], Status::InvalidArgumentLength);
+        for i in 0..before.len() {
+            for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut scalars = before.clone();
+                scalars[i] = wrong;
+                refused(&scalars, Status::InvalidValue);
+            }
+        }
+        let empty =
+            if T::INFO.scalars == Scalars::Shapes { Status::InvalidValue } else { Status::InvalidArgumentLength };
+        refused(&[], empty);
+    }
+    for_each_type!(law);
+}

@@ -229,10 +229,9 @@ macro_rules! registry {
         static REGISTRY: &[Entry] = &[$(entry::<$module::$Type>()),*];
         #[cfg(test)]
         macro_rules! for_each_type {
-            ($law:ident) => { $($law::<$module::$Type>();)* };
+            ($law:ident) => { $($law::<$crate::constraints::$module::$Type>();)* };
         }
         #[cfg(test)]
-        #[allow(unused_imports, reason = "used by the law suite")]
         use for_each_type;
     };
 }
