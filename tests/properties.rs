@@ -80,7 +80,8 @@ fn scalars_for(info: &TypeInfo, stream: &mut Stream) -> Option<Vec<f64>> {
     }
 }
 
-fn model(seed: u64, is_chosen: impl Fn(&TypeInfo) -> bool) -> Model {
+/// A model whose points start up to about `spread` from where they are at rest.
+fn model(seed: u64, spread: f64, is_chosen: impl Fn(&TypeInfo) -> bool) -> Model {
     let mut stream = Stream(seed);
     let mut rest = Vec::new();
     for z in 0..SIDES[2] {
@@ -90,7 +91,7 @@ fn model(seed: u64, is_chosen: impl Fn(&TypeInfo) -> bool) -> Model {
             }
         }
     }
-    let points = rest.iter().map(|point| *point + 0.5 * stream.vector()).collect();
+    let points = rest.iter().map(|point| *point + spread * stream.vector()).collect();
     let chosen: Vec<_> = types().filter(|info| is_chosen(info)).collect();
     let mut constraints = Vec::new();
     for info in types().filter(|info| info.name == "Closeness") {
@@ -167,11 +168,11 @@ fn check(name: &str, cases: u32, law: impl Fn(u64) -> Result<(), TestCaseError>)
 }
 
 /// The largest relative rise of the energy in one iteration, over the iterations of one static solve or one time step.
-fn largest_rise(model: &Model, is_dynamic: bool) -> f64 {
+fn largest_rise(model: &Model, is_dynamic: bool, max_iterations: u32) -> f64 {
     let mut solver = model.solver(is_dynamic);
     let mut rise = 0.0_f64;
     let mut last = None;
-    let options = SolveOptions { max_iterations: 60, tolerance: 0.0, time_budget_seconds: 0.0 };
+    let options = SolveOptions { max_iterations, tolerance: 0.0, time_budget_seconds: 0.0 };
     let report = solver
         .solve_until(&options, &mut |progress| {
             // Relative to the size of the terms that the energy is the difference of.
@@ -189,7 +190,7 @@ fn largest_rise(model: &Model, is_dynamic: bool) -> f64 {
 fn the_energy_never_rises_with_nearest_projections() {
     for is_dynamic in [false, true] {
         check("energy", 60, |seed| {
-            let rise = largest_rise(&model(seed, |info| info.projection == Projection::Nearest), is_dynamic);
+            let rise = largest_rise(&model(seed, 0.5, |info| info.projection == Projection::Nearest), is_dynamic, 60);
             prop_assert!(rise < 1e-13, "seed {seed}: the energy rose by {rise:.1e}, dynamic: {is_dynamic}");
             Ok(())
         });
@@ -201,14 +202,16 @@ fn with_other_projections_the_rise_is_known() {
     let mut rises = BTreeMap::new();
     for info in types().filter(|info| info.projection != Projection::Nearest) {
         let mut worst = 0.0_f64;
-        for seed in 0..30 {
-            worst = worst.max(largest_rise(&model(seed, |other| other.name == info.name), false));
+        for seed in 0..60 {
+            // Without forces, whose fall would hide a rise, and until little else moves.
+            let model = Model { force: DVec3::ZERO, ..model(seed, 1.0, |other| other.name == info.name) };
+            worst = worst.max(largest_rise(&model, false, 400));
         }
         rises.insert(info.name, worst);
     }
     for (name, rise) in &rises {
         println!("energy: largest relative rise in one iteration with {name:<15} {rise:.1e}");
-        assert!(*rise < 0.1, "{name}: {rise}");
+        assert!(*rise < 1e-6, "{name}: {rise}");
     }
 }
 
@@ -216,7 +219,7 @@ fn with_other_projections_the_rise_is_known() {
 fn the_answer_turns_with_the_model() {
     for is_dynamic in [false, true] {
         check("rigid motion", 30, |seed| {
-            let (model, mut stream) = (model(seed, |_| true), Stream(seed ^ 0x5555));
+            let (model, mut stream) = (model(seed, 0.5, |_| true), Stream(seed ^ 0x5555));
             let rotation = DQuat::from_scaled_axis(6.0 * stream.vector());
             let shift = 20.0 * stream.vector();
             let turned: Vec<_> = model.solved(is_dynamic).iter().map(|point| rotation * *point + shift).collect();
@@ -231,7 +234,7 @@ fn the_answer_turns_with_the_model() {
 fn the_answer_scales_with_the_model() {
     for s in [1e-6, 1e-3, 1e3, 1e6] {
         check("scale", 15, |seed| {
-            let model = model(seed, |_| true);
+            let model = model(seed, 0.5, |_| true);
             let grown: Vec<_> = model.solved(false).iter().map(|point| s * *point).collect();
             let difference = largest_difference(&model.scaled(s).solved(false), &grown) / (s * DIAGONAL);
             prop_assert!(difference < 1e-9, "seed {seed}, scale {s}: differs by {difference:.1e} of the diagonal");
@@ -243,7 +246,7 @@ fn the_answer_scales_with_the_model() {
 #[test]
 fn the_order_of_constraints_does_not_matter() {
     check("order", 30, |seed| {
-        let model = model(seed, |_| true);
+        let model = model(seed, 0.5, |_| true);
         let mut shuffled = model.clone();
         let mut stream = Stream(!seed);
         for i in (1..shuffled.constraints.len()).rev() {
