@@ -1,4 +1,6 @@
 //! Constraint-based geometry.
+#![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
+
 pub mod constraints;
 pub mod error;
 pub mod linalg;

@@ -21,7 +21,7 @@ use crate::error::{Error, Result, Status};
 const COLLINEAR: f64 = 1e-14;
 
 /// One Angle constraint; it has no rest state.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Angle;
 
 /// The foot of `edge` on the direction that lies by `turn` from it towards the unit vector `across`, which is orthogonal to it.

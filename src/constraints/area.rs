@@ -15,7 +15,7 @@ use super::{Constraint, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, che
 use crate::error::Result;
 
 /// One Area constraint: its rest shape.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Area(RestShape<2>);
 
 impl Constraint for Area {

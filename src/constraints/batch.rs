@@ -61,7 +61,7 @@ pub(crate) trait Batch: Send + Sync {
 }
 
 /// Lists of one kind behind each other. A list that is replaced by one of another length moves to the end.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 struct Lists<V> {
     spans: Vec<(usize, usize)>,
     values: Vec<V>,
@@ -115,7 +115,7 @@ impl<V: Copy> Lists<V> {
 }
 
 /// The batch of the type `T`.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct TypedBatch<T> {
     rest: Vec<T>,
     indices: Lists<u32>,

@@ -23,7 +23,7 @@ const FLAT: f64 = 1e-6;
 const DEGENERATE: f64 = 1e-12;
 
 /// One Bending constraint: its rest shape.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Bending {
     coefficients: [f64; 4],
     /// `n`; 0 where the pair is flat at rest.

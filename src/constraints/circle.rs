@@ -18,7 +18,7 @@ use crate::linalg::small::{scatter, symmetric_eigen};
 const STRAIGHT: f64 = 1e-12;
 
 /// One Circle constraint; it has no rest state.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Circle;
 
 /// The best-fit plane through the mean, and the circle in it.

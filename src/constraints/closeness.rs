@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::{Constraint, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo};
 
 /// One Closeness constraint. Its target is its scalars, so it has no rest state.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Closeness;
 
 impl Constraint for Closeness {

@@ -12,7 +12,7 @@ use super::{Constraint, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo, ch
 use crate::error::Result;
 
 /// One EdgeStrain constraint.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct EdgeStrain {
     /// `L₀`, the length at creation.
     rest_length: f64,

@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
 
 /// One Laplacian constraint; it has no rest state.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Laplacian;
 
 /// The coefficients of the uniform Laplacian, for a center first and then its neighbours.

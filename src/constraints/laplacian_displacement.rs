@@ -10,7 +10,7 @@ use super::laplacian::{uniform_laplacian, uniform_row};
 use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
 
 /// One LaplacianDisplacement constraint: the Laplacian at creation.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct LaplacianDisplacement(DVec3);
 
 impl Constraint for LaplacianDisplacement {

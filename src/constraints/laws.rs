@@ -33,7 +33,7 @@ impl Stream {
 }
 
 /// One constraint on its own points, `0, 1, …`.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 struct Sample<T> {
     constraint: T,
     scalars: Vec<f64>,
@@ -54,7 +54,7 @@ impl<T: Constraint> Sample<T> {
         match T::INFO.scalars {
             Scalars::None => {}
             Scalars::Shapes => {
-                sample.scalars = stream.vectors(2 * rest.len()).iter().flat_map(DVec3::to_array).collect()
+                sample.scalars = stream.vectors(2 * rest.len()).iter().flat_map(DVec3::to_array).collect();
             }
             Scalars::Named(_) => {
                 let defaults = sample.scalars.clone();

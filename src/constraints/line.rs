@@ -11,7 +11,7 @@ use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::small::{scatter, symmetric_eigen};
 
 /// One Line constraint; it has no rest state.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Line;
 
 fn direction(x: Stencil<'_>) -> DVec3 {

@@ -96,7 +96,7 @@ pub struct TypeInfo {
 ///
 /// `scalars` are always valid for [`Constraint::check_scalars`]. Everything finite that goes in must give finite results,
 /// coincident and collinear points included.
-pub trait Constraint: Clone + Send + Sync + 'static {
+pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// What the world needs to know of this type.
     const INFO: TypeInfo;
 

@@ -12,7 +12,7 @@ use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::small::{least_eigenvector, scatter};
 
 /// One Parallelogram constraint; it has no rest state.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Parallelogram;
 
 fn nearest_in_plane(x: Stencil<'_>) -> [DVec3; 4] {

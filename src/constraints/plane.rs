@@ -11,7 +11,7 @@ use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::small::{least_eigenvector, scatter};
 
 /// One Plane constraint; it has no rest state.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Plane;
 
 impl Constraint for Plane {

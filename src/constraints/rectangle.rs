@@ -18,7 +18,7 @@ use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::small::{scatter, symmetric_eigen};
 
 /// One Rectangle constraint; it has no rest state.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Rectangle;
 
 fn nearest_sides(x: Stencil<'_>) -> [DVec3; 4] {

@@ -12,7 +12,7 @@ use super::shape_fit::{self, Scale};
 use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
 
 /// One Rigid constraint. Its templates are its scalars; it keeps the number of points.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Rigid {
     point_count: usize,
 }

@@ -128,6 +128,12 @@ impl Clone for ConstraintSet {
     }
 }
 
+impl std::fmt::Debug for ConstraintSet {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ConstraintSet").field("id_count", &self.id_count()).finish_non_exhaustive()
+    }
+}
+
 impl ConstraintSet {
     /// The number of ids given out, removed ones included.
     pub fn id_count(&self) -> usize {

@@ -17,7 +17,7 @@ use crate::linalg::small::{scatter, symmetric_eigen};
 const FLAT: f64 = 1e-12;
 
 /// One Sphere constraint; it has no rest state.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Sphere;
 
 /// Center, about the mean of the points, and radius; `None` for points in a plane.

@@ -16,7 +16,7 @@ use super::{Constraint, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, che
 use crate::error::Result;
 
 /// One TetrahedronStrain constraint: its rest shape.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct TetrahedronStrain(RestShape<3>);
 
 impl Constraint for TetrahedronStrain {

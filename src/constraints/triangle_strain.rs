@@ -13,7 +13,7 @@ use super::{Constraint, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, che
 use crate::error::Result;
 
 /// One TriangleStrain constraint: its rest shape.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct TriangleStrain(RestShape<2>);
 
 impl Constraint for TriangleStrain {

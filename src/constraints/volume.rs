@@ -15,7 +15,7 @@ use super::{Constraint, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, che
 use crate::error::Result;
 
 /// One Volume constraint: its rest shape.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Volume(RestShape<3>);
 
 impl Constraint for Volume {

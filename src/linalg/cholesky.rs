@@ -137,6 +137,12 @@ pub struct Analysis {
     symbolic: SymbolicCholesky<u32>,
 }
 
+impl std::fmt::Debug for Analysis {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Analysis").field("factor_value_count", &self.factor_value_count()).finish_non_exhaustive()
+    }
+}
+
 impl Analysis {
     /// Analyses the pattern of `matrix`.
     ///
@@ -166,6 +172,12 @@ pub struct Factor {
     scratch: MemBuffer,
     factor_scratch: MemBuffer,
     is_singular: bool,
+}
+
+impl std::fmt::Debug for Factor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Factor").field("is_singular", &self.is_singular).finish_non_exhaustive()
+    }
 }
 
 impl Factor {

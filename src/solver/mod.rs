@@ -77,6 +77,16 @@ struct Workspace {
     start: Vec<DVec3>,
 }
 
+impl std::fmt::Debug for Solver {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Solver")
+            .field("point_count", &self.points.len())
+            .field("constraint_count", &self.constraint_count())
+            .field("force_count", &self.force_count())
+            .finish_non_exhaustive()
+    }
+}
+
 impl Solver {
     /// A solver without points.
     pub fn new() -> Self {

@@ -83,7 +83,7 @@ pub struct Report {
 }
 
 /// What a progress function sees after every iteration.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Progress<'a> {
     /// Iterations made so far, from 1.
     pub iteration: u32,
