@@ -45,3 +45,27 @@ impl Constraint for Plane {
         x.iter().map(|point| point.dot(normal).abs()).fold(0.0, f64::max)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_warped_square_is_flattened_between_its_corners() {
+        // Corners alternately h above and below z = 7: by symmetry the plane is z = 7.
+        let points = [[0.0, 0.0, 7.1], [1.0, 0.0, 6.9], [1.0, 1.0, 7.1], [0.0, 1.0, 6.9]].map(DVec3::from);
+        let stencil = Stencil::centred(&points, &[0, 1, 2, 3]);
+        let mut targets = [DVec3::ZERO; 4];
+        Plane.project(&[], stencil, &mut targets);
+        for (target, point) in targets.into_iter().zip(points) {
+            assert!((target - DVec3::new(point.x - 0.5, point.y - 0.5, 0.0)).length() < 1e-15);
+        }
+        assert!((Plane.violation(&[], stencil) - 0.1).abs() < 1e-15);
+    }
+
+    #[test]
+    fn points_on_a_line_stay() {
+        let points = [0.0, 1.0, 5.0].map(|x| DVec3::new(x, -x, 2.0 * x));
+        assert!(Plane.violation(&[], Stencil::centred(&points, &[0, 1, 2])) < 1e-15);
+    }
+}
