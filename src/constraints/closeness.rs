@@ -48,3 +48,19 @@ impl Constraint for Closeness {
         x.at(0).distance(DVec3::from_slice(scalars))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_target_is_the_place_at_creation_until_it_is_edited() {
+        let points = [DVec3::new(1.0, 2.0, 3.0), DVec3::ZERO];
+        let mut scalars = Vec::new();
+        let closeness = Closeness::at_rest(Stencil::absolute(&points, &[0]), &mut scalars);
+        let mut targets = [DVec3::ZERO];
+        closeness.project(&scalars, Stencil::absolute(&points, &[1]), &mut targets);
+        assert_eq!(targets[0], points[0]);
+        assert_eq!(closeness.violation(&[0.0, 3.0, 4.0], Stencil::absolute(&points, &[1])), 5.0);
+    }
+}

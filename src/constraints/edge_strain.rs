@@ -80,3 +80,35 @@ impl Constraint for EdgeStrain {
         scalars[0] <= 0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edge_is_cut_to_its_range_along_itself() {
+        let (rest, pulled) = ([DVec3::ZERO, 2.0 * DVec3::X], [DVec3::ONE, DVec3::ONE + 5.0 * DVec3::Y]);
+        let mut scalars = Vec::new();
+        let edge = EdgeStrain::at_rest(Stencil::absolute(&rest, &[0, 1]), &mut scalars);
+        assert_eq!((scalars.as_slice(), edge.measure(&scalars)), ([2.0, 1.0, 1.0].as_slice(), 2.0));
+        // At most 1.5 × 2 long: the target is 1.5 in units of the length, and 5 − 3 = 2 is too much.
+        let (scalars, mut targets, mut row) = ([2.0, 0.5, 1.5], [DVec3::ZERO], [0.0; 2]);
+        edge.project(&scalars, Stencil::absolute(&pulled, &[0, 1]), &mut targets);
+        edge.rows(&scalars, &mut row);
+        assert_eq!((targets[0], row), (1.5 * DVec3::Y, [-0.5, 0.5]));
+        assert_eq!(edge.violation(&scalars, Stencil::absolute(&pulled, &[0, 1])), 2.0);
+    }
+
+    #[test]
+    fn an_edge_of_no_length_waits_for_one_to_be_edited_in() {
+        let points = [DVec3::ONE; 2];
+        let mut scalars = Vec::new();
+        let edge = EdgeStrain::at_rest(Stencil::absolute(&points, &[0, 1]), &mut scalars);
+        let mut row = [0.0; 2];
+        edge.rows(&scalars, &mut row);
+        assert!(edge.is_degenerate(&scalars) && row == [0.0; 2] && edge.measure(&scalars) == 0.0);
+        let edited = [4.0, 1.0, 1.0];
+        edge.rows(&edited, &mut row);
+        assert!(!edge.is_degenerate(&edited) && row == [-0.25, 0.25] && edge.measure(&edited) == 4.0);
+    }
+}

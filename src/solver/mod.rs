@@ -5,6 +5,8 @@
 //! inertia `M = (m/δ₀²) I` and `external` is `M y`, `y` being where momentum alone would take the points. Either way an
 //! iteration with nearest projections never raises the energy. Sources: Bouaziz et al. 2012 and 2014; Deuss et al. 2015.
 
+mod assembly;
+mod free_components;
 mod local_global;
 mod parallel;
 mod report;

@@ -1,10 +1,6 @@
 //! The linear system of the global step, `N x = Aᵀp + external` with `N = Σ s AᵀA + inertia`, and the way from targets to
 //! right-hand sides. `s` is a constraint's stiffness: its weight times its measure.
 //!
-//! Short centred constraints enter `N` as the dense block `s (I − 11ᵀ/k)`. Long ones would fill it, so they get one more
-//! unknown each, their mean `m`: minimising `½ s Σ ‖x_i − m − p_i‖²` over `x` and `m` has the same minimiser in `x`, and
-//! costs `k + 1` entries.
-//!
 //! `N` can be singular without inertia. Three remedies keep the change of the points least:
 //! - a point with a zero row keeps its place;
 //! - a component that nothing holds against translation has its first point held while solving, and is then moved back
@@ -17,21 +13,16 @@ use std::time::Instant;
 
 use glam::DVec3;
 
+use super::assembly::{Gather, fill, long_constraint_count, new_pattern};
+use super::free_components::{FreeComponent, free_components};
 use super::parallel::for_parts;
-use crate::constraints::{ConstraintSet, Rows};
+use crate::constraints::ConstraintSet;
 use crate::error::{Error, Result, Status};
 use crate::linalg::cholesky::{Analysis, Factor, SymmetricMatrix};
-
-/// Centred constraints of more points than this get an unknown of their own. Up to here the block has fewer entries
-/// than the fill that a further unknown would cause when it is eliminated.
-const LONGEST_DENSE_STENCIL: usize = 12;
 
 /// Indices (and so targets, roughly) that one chunk of the local step covers: some 10 µs of work, so that splitting costs
 /// little, and some ten chunks per thread of the smallest problem that runs in parallel.
 const CHUNK_INDICES: usize = 512;
-
-/// Points whose right-hand sides one chunk gathers.
-const CHUNK_POINTS: usize = 1024;
 
 /// Targets above which the local step runs in parallel: with the fastest types, two threads break even at half as many.
 const PARALLEL_TARGETS: usize = 2048;
@@ -42,9 +33,6 @@ const PARALLEL_ENTRIES: usize = 1 << 16;
 /// The pull of a proximal step, relative to the diagonal of `N`. Round-off along free motions is amplified by its
 /// inverse: 1e-16 becomes 1e-10 of the model's size per iteration.
 const PROXIMAL: f64 = 1e-6;
-
-/// Row coefficients that add up to less than this multiple of their absolute sum leave translations free.
-const TRANSLATION_FREE: f64 = 1e-9;
 
 /// A total force on a free component below this multiple of the sum of its forces' lengths is round-off.
 const BALANCED: f64 = 1e-10;
@@ -61,14 +49,6 @@ struct Chunk {
     batch: usize,
     first_slot: usize,
     end_slot: usize,
-}
-
-/// Points that constraints hold together and that nothing holds against translation.
-struct FreeComponent {
-    /// Ascending; the first is held while solving.
-    points: Vec<u32>,
-    /// What holds it: as much as its own diagonal entry; 0 where a proximal step takes care of translations too.
-    held_stiffness: f64,
 }
 
 /// The system of the global step, with the memory that an iteration needs.
@@ -95,13 +75,6 @@ pub(super) struct System {
     proximal: Vec<f64>,
     pub(super) analysis_seconds: f64,
     pub(super) factorisation_seconds: f64,
-}
-
-/// `Aᵀ` by rows: the right-hand side of each point as a sum over targets, in a fixed order.
-struct Gather {
-    starts: Vec<usize>,
-    entries: Vec<(u32, f64)>,
-    bounds: Vec<usize>,
 }
 
 impl System {
@@ -358,168 +331,4 @@ impl System {
         self.chunk_energies = vec![0.0; self.chunks.len()];
         self.targets = vec![DVec3::ZERO; target_count];
     }
-}
-
-impl Gather {
-    fn new(constraints: &ConstraintSet, stiffness: &[Vec<f64>], point_count: usize) -> Self {
-        let mut starts = vec![0_usize; point_count + 1];
-        each_target(constraints, stiffness, |point, _, _| starts[point as usize + 1] += 1);
-        for i in 0..point_count {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut entries = vec![(0_u32, 0.0); starts[point_count]];
-        each_target(constraints, stiffness, |point, target, coefficient| {
-            let place = &mut next[point as usize];
-            entries[*place] = (target, coefficient);
-            *place += 1;
-        });
-        let mut bounds: Vec<usize> = (0..point_count).step_by(CHUNK_POINTS).collect();
-        bounds.push(point_count);
-        Self { starts, entries, bounds }
-    }
-}
-
-/// Calls `visit(point, target, coefficient)` for every nonzero entry of `Aᵀ`, stiffness included.
-fn each_target(constraints: &ConstraintSet, stiffness: &[Vec<f64>], mut visit: impl FnMut(u32, u32, f64)) {
-    let mut base = 0;
-    for ((batch, _), stiffness) in constraints.batches().zip(stiffness) {
-        for (slot, &s) in stiffness.iter().enumerate() {
-            let (indices, first) = (batch.indices(slot), base + batch.target_offset(slot));
-            match batch.info().rows {
-                Rows::Centred if s > 0.0 => {
-                    indices.iter().enumerate().for_each(|(i, &point)| visit(point, (first + i) as u32, s));
-                }
-                Rows::Linear(_) if s > 0.0 => {
-                    for (r, row) in batch.rows(slot).chunks_exact(indices.len()).enumerate() {
-                        for (&point, &a) in indices.iter().zip(row).filter(|(_, a)| **a != 0.0) {
-                            visit(point, (first + r) as u32, s * a);
-                        }
-                    }
-                }
-                _ => {}
-            }
-        }
-        base += batch.target_offset(batch.len());
-    }
-}
-
-/// Calls `visit(i, j, value)` for every contribution of the constraints to the lower triangle of `N`. Constraints of
-/// weight 0 contribute zeros, so that they are in the pattern when their weight is raised.
-fn each_entry(
-    constraints: &ConstraintSet,
-    stiffness: Option<&[Vec<f64>]>,
-    point_count: usize,
-    mut visit: impl FnMut(u32, u32, f64),
-) {
-    let mut mean = point_count as u32;
-    for (index, (batch, _)) in constraints.batches().enumerate() {
-        for slot in 0..batch.len() {
-            let s = stiffness.map_or(0.0, |stiffness| stiffness[index][slot]);
-            let (indices, rows) = (batch.indices(slot), batch.rows(slot));
-            let k = indices.len();
-            match batch.info().rows {
-                Rows::Centred if k > LONGEST_DENSE_STENCIL => {
-                    for &i in indices {
-                        visit(i, i, s);
-                        visit(mean, i, -s);
-                    }
-                    visit(mean, mean, s * k as f64);
-                    mean += 1;
-                }
-                kind => {
-                    let value = |a: usize, b: usize| match kind {
-                        Rows::Centred => s * (f64::from(u8::from(a == b)) - 1.0 / k as f64),
-                        Rows::Linear(_) => s * rows.chunks_exact(k).map(|row| row[a] * row[b]).sum::<f64>(),
-                    };
-                    for a in 0..k {
-                        visit(indices[a], indices[a], value(a, a));
-                        for b in 0..a {
-                            // A repeated index meets itself in both triangles.
-                            let times = if indices[a] == indices[b] { 2.0 } else { 1.0 };
-                            visit(indices[a], indices[b], times * value(a, b));
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn long_constraint_count(constraints: &ConstraintSet) -> usize {
-    let centred = constraints.batches().filter(|(batch, _)| batch.info().rows == Rows::Centred);
-    centred.map(|(batch, _)| (0..batch.len()).filter(|&i| batch.indices(i).len() > LONGEST_DENSE_STENCIL).count()).sum()
-}
-
-fn new_pattern(constraints: &ConstraintSet, point_count: usize, unknown_count: usize) -> Result<SymmetricMatrix> {
-    SymmetricMatrix::with_pattern(unknown_count, |report| {
-        each_entry(constraints, None, point_count, |i, j, _| report(i, j));
-    })
-}
-
-/// Assembles the constraints' part of `N`. False if the pattern does not cover it.
-fn fill(matrix: &mut SymmetricMatrix, constraints: &ConstraintSet, stiffness: &[Vec<f64>], point_count: usize) -> bool {
-    matrix.clear();
-    let mut is_covered = true;
-    each_entry(constraints, Some(stiffness), point_count, |i, j, value| is_covered &= matrix.add(i, j, value));
-    is_covered
-}
-
-/// The components that rows with coefficients leave free to translate, without the points that have no row at all.
-fn free_components(
-    constraints: &ConstraintSet,
-    stiffness: &[Vec<f64>],
-    unconstrained: &[u32],
-    point_count: usize,
-) -> Vec<FreeComponent> {
-    let mut parents: Vec<u32> = (0..point_count as u32).collect();
-    let mut is_held = vec![false; point_count];
-    fn root(parents: &mut [u32], mut i: u32) -> u32 {
-        while parents[i as usize] != i {
-            parents[i as usize] = parents[parents[i as usize] as usize];
-            i = parents[i as usize];
-        }
-        i
-    }
-    let mut join = |points: &mut dyn Iterator<Item = u32>| {
-        if let Some(first) = points.next() {
-            for point in points {
-                let (a, b) = (root(&mut parents, first), root(&mut parents, point));
-                parents[a.max(b) as usize] = a.min(b);
-            }
-        }
-    };
-    for ((batch, _), stiffness) in constraints.batches().zip(stiffness) {
-        for (slot, _) in stiffness.iter().enumerate().filter(|(_, s)| **s > 0.0) {
-            let indices = batch.indices(slot);
-            if batch.info().rows == Rows::Centred {
-                join(&mut indices.iter().copied());
-            }
-            for row in batch.rows(slot).chunks_exact(indices.len()) {
-                let touched = || indices.iter().zip(row).filter(|(_, a)| **a != 0.0).map(|(&i, _)| i);
-                join(&mut touched());
-                let (sum, size) = (row.iter().sum::<f64>(), row.iter().map(|a| a.abs()).sum::<f64>());
-                if sum.abs() > TRANSLATION_FREE * size {
-                    touched().for_each(|point| is_held[point as usize] = true);
-                }
-            }
-        }
-    }
-    let mut component_of = vec![usize::MAX; point_count];
-    let mut components: Vec<(FreeComponent, bool)> = Vec::new();
-    let mut skip = unconstrained.iter().peekable();
-    for point in 0..point_count as u32 {
-        if skip.next_if_eq(&&point).is_some() {
-            continue;
-        }
-        let slot = &mut component_of[root(&mut parents, point) as usize];
-        if *slot == usize::MAX {
-            *slot = components.len();
-            components.push((FreeComponent { points: Vec::new(), held_stiffness: 0.0 }, false));
-        }
-        let (component, is_component_held) = &mut components[*slot];
-        component.points.push(point);
-        *is_component_held |= is_held[point as usize];
-    }
-    components.into_iter().filter(|(_, is_held)| !is_held).map(|(component, _)| component).collect()
 }
