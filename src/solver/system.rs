@@ -90,7 +90,8 @@ impl System {
             .batches()
             .map(|(batch, weights)| weights.iter().enumerate().map(|(slot, w)| w * batch.measure(slot)).collect())
             .collect();
-        let unknown_count = point_count + long_constraint_count(constraints);
+        // One without meaning where there is none, so that there is always a matrix.
+        let unknown_count = (point_count + long_constraint_count(constraints)).max(1);
         let started = Instant::now();
         let known = previous.filter(|known| known.matrix.dimension() == unknown_count);
         let (mut matrix, known_analysis) = match known {
@@ -191,7 +192,7 @@ impl System {
         };
         for_parts(&gather.bounds, &mut self.solution[..n], &mut self.gather_results, is_parallel, &work);
         self.solution[n..].fill(DVec3::ZERO);
-        self.solve_in_place(points);
+        self.solve_in_place(points, is_parallel);
         &self.solution[..n]
     }
 
@@ -239,7 +240,7 @@ impl System {
         for _ in 0..RESISTANCE_STEPS {
             self.solution[..n].copy_from_slice(&left);
             self.solution[n..].fill(DVec3::ZERO);
-            self.solve_in_place(&rest);
+            self.solve_in_place(&rest, false);
             for ((left, x), pull) in left.iter_mut().zip(&self.solution).zip(&self.proximal) {
                 *left = *x * *pull;
             }
@@ -252,7 +253,7 @@ impl System {
     }
 
     /// Solves with the right-hand sides in `solution` and undoes what holding the free components changed.
-    fn solve_in_place(&mut self, points: &[DVec3]) {
+    fn solve_in_place(&mut self, points: &[DVec3], is_parallel: bool) {
         for component in self.free_components.iter().filter(|component| component.held_stiffness > 0.0) {
             let held = component.points[0] as usize;
             self.solution[held] += component.held_stiffness * points[held];
@@ -260,7 +261,7 @@ impl System {
         for &point in &self.unconstrained {
             self.solution[point as usize] = points[point as usize];
         }
-        self.factor.solve(&self.analysis, &mut self.solution);
+        self.factor.solve(&mut self.solution, is_parallel);
         for component in self.free_components.iter().filter(|component| component.held_stiffness > 0.0) {
             let (solution, count) = (&mut self.solution, component.points.len() as f64);
             let change = |&point: &u32| points[point as usize] - solution[point as usize];
