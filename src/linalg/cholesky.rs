@@ -25,6 +25,9 @@ fn singular_pivot(dimension: usize) -> f64 {
 /// What faer puts in the place of such a pivot: so much that the rest stays finite. The factor is of no use then.
 const REPLACED_PIVOT: f64 = 1e40;
 
+/// Supernodal whatever the ratio of operations to entries is; that of a diagonal matrix is 0.
+const ALWAYS_SUPERNODAL: SupernodalThreshold = SupernodalThreshold(-1.0);
+
 /// The lower triangle of a symmetric matrix in compressed columns, assembled again and again into the same pattern.
 #[derive(Clone, Debug)]
 pub struct SymmetricMatrix {
@@ -148,16 +151,14 @@ impl std::fmt::Debug for Analysis {
 }
 
 impl Analysis {
-    /// Analyses the pattern of `matrix`.
+    /// Analyses the pattern of `matrix`, which has at least one row.
     ///
     /// # Errors
     /// Status `TooLarge` if memory does not suffice.
     pub fn new(matrix: &SymmetricMatrix) -> Result<Self> {
         let pattern = pattern(matrix);
-        let parameters = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-            ..Default::default()
-        };
+        let parameters =
+            CholeskySymbolicParams { supernodal_flop_ratio_threshold: ALWAYS_SUPERNODAL, ..Default::default() };
         let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, parameters);
         Ok(Self { symbolic: symbolic.map_err(|error| too_large("the analysis", &error))? })
     }

@@ -90,7 +90,8 @@ impl System {
             .batches()
             .map(|(batch, weights)| weights.iter().enumerate().map(|(slot, w)| w * batch.measure(slot)).collect())
             .collect();
-        let unknown_count = point_count + long_constraint_count(constraints);
+        // One without meaning where there is none, so that there is always a matrix.
+        let unknown_count = (point_count + long_constraint_count(constraints)).max(1);
         let started = Instant::now();
         let known = previous.filter(|known| known.matrix.dimension() == unknown_count);
         let (mut matrix, known_analysis) = match known {
