@@ -357,3 +357,16 @@ fn what_overflows_is_refused_and_changes_nothing() {
         assert_eq!(solver.points(), before);
     }
 }
+
+#[test]
+fn without_points_or_constraints_nothing_happens() {
+    let mut empty = Solver::new();
+    empty.init().unwrap();
+    empty.solve(3).unwrap();
+    empty.init_dynamic(1.0, 1.0, 1.0).unwrap();
+    empty.solve(3).unwrap();
+    let mut loose = solver(&[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    loose.init().unwrap();
+    loose.solve(3).unwrap();
+    assert_eq!((loose.points()[1], loose.unconstrained_count()), (DVec3::new(4.0, 5.0, 6.0), 2));
+}
