@@ -117,7 +117,10 @@ pub fn model(name: &str, vertex_count: u32) -> Option<Model> {
         }
         "squares" => {
             let unit = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
-            still(vec![with_scalars(group("Similarity", 4, quads(n), 1.0), &unit), group("Closeness", 1, corners, 10.0)])
+            still(vec![
+                with_scalars(group("Similarity", 4, quads(n), 1.0), &unit),
+                group("Closeness", 1, corners, 10.0),
+            ])
         }
         "quad_circles" => {
             still(vec![group("Circle", 4, quads(n), 1.0), group("Closeness", 1, (0..n * n).collect(), 0.05)])
@@ -144,7 +147,9 @@ pub fn model(name: &str, vertex_count: u32) -> Option<Model> {
         "shell" => {
             let angles = quads(n)
                 .chunks_exact(4)
-                .flat_map(|quad| (0..4).flat_map(|i| [quad[i], quad[(i + 1) % 4], quad[(i + 3) % 4]]).collect::<Vec<_>>())
+                .flat_map(|quad| {
+                    (0..4).flat_map(|i| [quad[i], quad[(i + 1) % 4], quad[(i + 3) % 4]]).collect::<Vec<_>>()
+                })
                 .collect();
             let inner = (1..n - 1).flat_map(|row| (1..n - 1).map(move |column| row * n + column));
             let stencils = inner.flat_map(|i| [i, i - 1, i + 1, i - n, i + n]).collect();
@@ -184,8 +189,7 @@ pub fn model(name: &str, vertex_count: u32) -> Option<Model> {
                     (DVec3::new(f64::from(i % n), f64::from(i / n % n), f64::from(i / n / n)) + bump) * spacing
                 })
                 .collect();
-            let faces: Vec<u32> =
-                (0..n * n * n).filter(|i| i % n == 0 || i % n == n - 1).collect();
+            let faces: Vec<u32> = (0..n * n * n).filter(|i| i % n == 0 || i % n == n - 1).collect();
             let targets = faces.iter().flat_map(|&i| {
                 let pull = if i % n == 0 { -0.15 } else { 0.15 };
                 (points[i as usize] + DVec3::X * pull).to_array()

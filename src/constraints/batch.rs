@@ -5,6 +5,8 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::{Constraint, Rows, Stencil, TypeInfo};
+use crate::linalg::lanes::{F4, V4};
+use crate::linalg::simd::{Kernel, dispatch};
 
 /// All constraints of one type. A *slot* is a constraint's place in the batch; removing constraints moves the later ones
 /// down, so slots change where ids do not.
@@ -214,12 +216,7 @@ impl<T: Constraint> Batch for TypedBatch<T> {
     }
 
     fn project(&self, slots: Range<usize>, points: &[DVec3], targets: &mut [DVec3]) {
-        let first = self.target_offset(slots.start);
-        for slot in slots {
-            let (start, end) = (self.target_offset(slot) - first, self.target_offset(slot + 1) - first);
-            let x = self.stencil(slot, points);
-            self.rest[slot].project(self.scalars.get(slot), x, &mut targets[start..end]);
-        }
+        dispatch(Project { batch: self, slots, points, targets });
     }
 
     fn squared_residual(&self, slots: Range<usize>, points: &[DVec3], targets: &[DVec3], stiffness: &[f64]) -> f64 {
@@ -242,7 +239,7 @@ impl<T: Constraint> Batch for TypedBatch<T> {
     }
 
     fn centre_targets(&self, slots: Range<usize>, targets: &mut [DVec3]) {
-        if T::INFO.rows != Rows::Centred {
+        if T::INFO.rows != Rows::Centred || T::TARGETS_ARE_CENTRED {
             return;
         }
         let mut rest = targets;
@@ -264,5 +261,110 @@ impl<T: Constraint> Batch for TypedBatch<T> {
 
     fn clone_box(&self) -> Box<dyn Batch> {
         Box::new(self.clone())
+    }
+}
+
+/// Points of the longest constraints that are projected four at a time.
+const LONGEST_OF_FOUR: usize = 8;
+
+/// What [`Constraint::project_four`] sees of four constraints besides their points.
+#[derive(Clone, Copy, Debug)]
+pub struct Four<'a, T> {
+    constraints: [&'a T; 4],
+    scalars: [&'a [f64]; 4],
+}
+
+impl<'a, T> Four<'a, T> {
+    /// Four rest states with the scalars in force of each.
+    pub fn new(constraints: [&'a T; 4], scalars: [&'a [f64]; 4]) -> Self {
+        Self { constraints, scalars }
+    }
+
+    /// Scalar `i` of each.
+    #[inline(always)]
+    pub fn scalar(&self, i: usize) -> F4 {
+        F4(self.scalars.map(|scalars| scalars[i]))
+    }
+
+    /// A number of each rest state.
+    #[inline(always)]
+    pub fn rest(&self, number: impl Fn(&T) -> f64) -> F4 {
+        F4(self.constraints.map(number))
+    }
+}
+
+/// The projection of some slots, four at a time where the type can.
+struct Project<'a, T> {
+    batch: &'a TypedBatch<T>,
+    slots: Range<usize>,
+    points: &'a [DVec3],
+    targets: &'a mut [DVec3],
+}
+
+impl<T: Constraint> Kernel for Project<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let Self { batch, slots, points, targets } = self;
+        let first = batch.target_offset(slots.start);
+        let mut slot = slots.start;
+        while slot < slots.end {
+            let k = batch.indices.get(slot).len();
+            let is_four = slot + 4 <= slots.end
+                && k <= LONGEST_OF_FOUR
+                && T::takes_four(k)
+                && (1..4).all(|i| batch.indices.get(slot + i).len() == k);
+            let count = if is_four { 4 } else { 1 };
+            let mut is_left = [true; 4];
+            if is_four {
+                let start = batch.target_offset(slot) - first;
+                let end = batch.target_offset(slot + 4) - first;
+                is_left = batch.project_four::<FMA>(slot, k, points, &mut targets[start..end]);
+            }
+            for i in (slot..slot + count).filter(|i| is_left[i - slot]) {
+                let (start, end) = (batch.target_offset(i) - first, batch.target_offset(i + 1) - first);
+                batch.rest[i].project(batch.scalars.get(i), batch.stencil(i, points), &mut targets[start..end]);
+            }
+            slot += count;
+        }
+    }
+}
+
+impl<T: Constraint> TypedBatch<T> {
+    /// Projects the constraints of four slots, of `k` points each; returns which of them are still to do.
+    #[inline(always)]
+    fn project_four<const FMA: bool>(
+        &self,
+        slot: usize,
+        k: usize,
+        points: &[DVec3],
+        targets: &mut [DVec3],
+    ) -> [bool; 4] {
+        let slots = [slot, slot + 1, slot + 2, slot + 3];
+        let indices = slots.map(|slot| &self.indices.get(slot)[..k]);
+        let mut x = [V4::ZERO; LONGEST_OF_FOUR];
+        let x = &mut x[..k];
+        for (j, x) in x.iter_mut().enumerate() {
+            *x = V4::gather(indices.map(|indices| points[indices[j] as usize]));
+        }
+        if T::INFO.rows == Rows::Centred {
+            // Summed relative to the first point: far from the origin the mean keeps the digits that differences have.
+            let first = x[0];
+            let sum = x[1..].iter().fold(V4::ZERO, |sum, &x| sum + (x - first));
+            let mean = first + sum * F4::splat(1.0 / k as f64);
+            x.iter_mut().for_each(|x| *x = *x - mean);
+        }
+        let rows = targets.len() / 4;
+        let mut four_targets = [V4::ZERO; LONGEST_OF_FOUR];
+        let four =
+            Four { constraints: slots.map(|slot| &self.rest[slot]), scalars: slots.map(|s| self.scalars.get(s)) };
+        let is_left = T::project_four::<FMA>(four, x, &mut four_targets[..rows]);
+        for (lane, targets) in targets.chunks_exact_mut(rows).enumerate() {
+            for (target, four) in targets.iter_mut().zip(&four_targets) {
+                *target = four.lane(lane);
+            }
+        }
+        is_left
     }
 }

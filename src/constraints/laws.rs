@@ -5,8 +5,12 @@
 
 use glam::{DQuat, DVec3};
 
-use super::{Constraint, ConstraintSet, NewConstraints, Projection, Rows, Scalars, Stencil, TypeInfo, for_each_type};
+use super::{
+    Constraint, ConstraintSet, Four, NewConstraints, Projection, Rows, Scalars, Stencil, TypeInfo, for_each_type,
+};
 use crate::error::Status;
+use crate::linalg::lanes::V4;
+use crate::linalg::simd::{Kernel, dispatch};
 
 /// Samples per law and type.
 const SAMPLES: u64 = 300;
@@ -331,6 +335,81 @@ fn whatever_is_finite_stays_finite() {
                     assert!(is_finite && violation >= 0.0, "{}: rest {rest:?}, x {x:?}: {targets:?}", T::INFO.name);
                 }
             }
+        }
+    }
+    for_each_type!(law);
+}
+
+/// Projects four samples of as many points with [`Constraint::project_four`]; `None` where the plain way is to be taken.
+fn project_four<T: Constraint>(samples: &[Sample<T>; 4], x: &[Vec<DVec3>; 4]) -> [Option<Vec<DVec3>>; 4] {
+    struct InLanes<'a, T>(&'a [Sample<T>; 4], &'a [Vec<DVec3>; 4]);
+    impl<T: Constraint> Kernel for InLanes<'_, T> {
+        type Output = [Option<Vec<DVec3>>; 4];
+
+        fn run<const FMA: bool>(self) -> Self::Output {
+            let Self(samples, x) = self;
+            let stencils: [Stencil<'_>; 4] = std::array::from_fn(|i| stencil(T::INFO.rows, &x[i], &samples[i].indices));
+            let lanes: Vec<V4> = (0..x[0].len()).map(|j| V4::gather(stencils.map(|stencil| stencil.at(j)))).collect();
+            let mut targets = vec![V4::gather([DVec3::NAN; 4]); samples[0].row_count()];
+            let four = Four::new(
+                std::array::from_fn(|i| &samples[i].constraint),
+                std::array::from_fn(|i| samples[i].scalars.as_slice()),
+            );
+            let is_left = T::project_four::<FMA>(four, &lanes, &mut targets);
+            std::array::from_fn(|i| (!is_left[i]).then(|| targets.iter().map(|target| target.lane(i)).collect()))
+        }
+    }
+    dispatch(InLanes(samples, x))
+}
+
+#[test]
+fn four_at_once_are_projected_as_each_alone() {
+    fn law<T: Constraint>() {
+        let name = T::INFO.name;
+        let (mut count, mut left, mut worst) = (0, 0, 0.0_f64);
+        for seed in 0..SAMPLES {
+            let (rest, _, mut stream) = points(&T::INFO, seed);
+            let k = rest.len();
+            if !T::takes_four(k) {
+                continue;
+            }
+            let scale = 10_f64.powf(18.0 * stream.next() - 9.0);
+            let mut configuration = |kind: usize| -> Vec<DVec3> {
+                // Mostly generic points; some nearly flat or nearly collinear ones, some degenerate.
+                let (a, b) = (stream.vector(), stream.vector());
+                let flat = [DVec3::ONE, DVec3::new(1.0, 1.0, 1e-3), DVec3::new(1.0, 1e-5, 1e-5), DVec3::X, DVec3::ZERO];
+                let turn = DQuat::from_scaled_axis(3.0 * a);
+                (0..k).map(|_| scale * (turn * (flat[kind] * stream.vector()) + b)).collect()
+            };
+            let rests: [Vec<DVec3>; 4] = std::array::from_fn(|_| configuration(0));
+            let kinds = [0, 1, 0, if seed % 4 == 0 { 2 + (seed / 4 % 3) as usize } else { 1 }];
+            let x = kinds.map(&mut configuration);
+            let samples: [Sample<T>; 4] =
+                std::array::from_fn(|i| Sample::random(&rests[i], &mut Stream(seed + i as u64)));
+            for (i, fast) in project_four(&samples, &x).into_iter().enumerate() {
+                count += 1;
+                let plain = samples[i].project(&x[i]);
+                match fast {
+                    None => left += 1,
+                    Some(fast) => {
+                        let difference = squared_distance(&fast, &plain).sqrt();
+                        let image =
+                            samples[i].image(&x[i]).iter().chain(&plain).map(|t| t.length()).fold(0.0, f64::max);
+                        let relative = if image > 0.0 { difference / image } else { difference };
+                        assert!(
+                            relative <= 1e-11,
+                            "{name}, sample {seed}, lane {i}: differs by {relative:e} of the size"
+                        );
+                        worst = worst.max(relative);
+                    }
+                }
+            }
+        }
+        if count > 0 {
+            println!(
+                "{name:<22} {count} projections four at once, {left} left to the plain way, worst difference {worst:.1e}"
+            );
+            assert!(2 * left < count, "{name}: most are left to the plain way");
         }
     }
     for_each_type!(law);

@@ -17,10 +17,12 @@ mod shape_fit;
 mod stencil;
 
 pub(crate) use batch::Batch;
+pub use batch::Four;
 pub use set::{ConstraintId, ConstraintSet, ConstraintView, Edited, NewConstraints};
 pub use stencil::Stencil;
 
 use crate::error::{Error, Result, Status};
+use crate::linalg::lanes::V4;
 use batch::TypedBatch;
 
 /// The rows `A` of a type.
@@ -121,6 +123,22 @@ pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
 
     /// Writes the projection of `x`: one target per row.
     fn project(&self, scalars: &[f64], x: Stencil<'_>, targets: &mut [glam::DVec3]);
+
+    /// True if [`Self::project_four`] takes constraints of `k` points.
+    fn takes_four(_k: usize) -> bool {
+        false
+    }
+
+    /// The fast twin of [`Self::project`], for four constraints of `k` points at once: writes the projections of the points
+    /// `x` (`k` entries) into `targets` (one entry per row), and returns for which of the four `project` must do it, because
+    /// the fast way is not accurate there. The same results within round-off.
+    #[inline(always)]
+    fn project_four<const FMA: bool>(_four: Four<'_, Self>, _x: &[V4], _targets: &mut [V4]) -> [bool; 4] {
+        [true; 4]
+    }
+
+    /// False where the targets of a centred type can have a mean other than 0.
+    const TARGETS_ARE_CENTRED: bool = true;
 
     /// How far `x` is from the set, in `INFO.violation_unit`; 0 on the set.
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64;

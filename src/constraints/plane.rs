@@ -7,7 +7,8 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
+use crate::linalg::lanes::{self, V4};
 use crate::linalg::small::{least_eigenvector, scatter};
 
 /// One Plane constraint; it has no rest state.
@@ -38,6 +39,20 @@ impl Constraint for Plane {
         for (target, point) in targets.iter_mut().zip(x.iter()) {
             *target = point - point.dot(normal) * normal;
         }
+    }
+
+    fn takes_four(_k: usize) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn project_four<const FMA: bool>(_four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
+        let (diagonal, off) = lanes::scatter::<FMA>(x);
+        let (normal, is_doubtful) = lanes::least_eigenvector::<FMA>(diagonal, off);
+        for (target, &point) in targets.iter_mut().zip(x) {
+            *target = normal.mul_add::<FMA>(-point.dot::<FMA>(normal), point);
+        }
+        is_doubtful
     }
 
     fn violation(&self, _scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -50,6 +50,9 @@ impl Constraint for Sphere {
         edited_as: None,
     };
 
+    // The points of an arc, say, have another mean than before they were moved radially.
+    const TARGETS_ARE_CENTRED: bool = false;
+
     fn at_rest(_x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self
     }

@@ -1,6 +1,7 @@
 //! Linear algebra: the sparse system of the global step, and closed forms in two and three dimensions.
 
 pub mod cholesky;
+pub mod lanes;
 mod panels;
-mod simd;
+pub mod simd;
 pub mod small;
