@@ -8,8 +8,9 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo, check_positive, check_range};
+use super::{Constraint, Four, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo, check_positive, check_range};
 use crate::error::Result;
+use crate::linalg::lanes::V4;
 
 /// One EdgeStrain constraint.
 #[derive(Clone, Debug)]
@@ -68,6 +69,21 @@ impl Constraint for EdgeStrain {
         } else {
             DVec3::ZERO
         };
+    }
+
+    fn takes_four(_k: usize) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
+        let [length, range_min, range_max] = [0, 1, 2].map(|i| four.scalar(i));
+        let edge = x[1] - x[0];
+        let squared = edge.dot::<FMA>(edge);
+        let current = squared.sqrt();
+        targets[0] = edge * ((current / length).max(range_min).min(range_max) / current);
+        // Edges without a length, or with one whose square is not a normal number.
+        std::array::from_fn(|i| !(length.0[i] > 0.0 && squared.0[i] > f64::MIN_POSITIVE && squared.0[i] < f64::MAX))
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

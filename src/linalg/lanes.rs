@@ -170,6 +170,20 @@ impl V4 {
     }
 }
 
+/// Two unit vectors orthogonal to the unit vector `normal` and to each other.
+///
+/// Source: Duff et al. 2017, "Building an orthonormal basis, revisited".
+#[inline(always)]
+pub fn orthogonal_pair<const FMA: bool>(normal: V4) -> (V4, V4) {
+    let (zero, one) = (F4::splat(0.0), F4::splat(1.0));
+    let sign = normal.z.where_above(zero, one, -one);
+    let a = -(one / (sign + normal.z));
+    let b = normal.x * normal.y * a;
+    let first = V4 { x: sign * (normal.x * normal.x * a) + one, y: sign * b, z: -(sign * normal.x) };
+    let second = V4 { x: b, y: (normal.y * normal.y).mul_add::<FMA>(a, sign), z: -normal.y };
+    (first, second)
+}
+
 /// The scatter `Σ x xᵀ` of four sets of vectors: its diagonal and its entries `yz`, `zx`, `xy`.
 #[inline(always)]
 pub fn scatter<const FMA: bool>(x: &[V4]) -> (V4, V4) {
