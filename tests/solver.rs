@@ -327,6 +327,19 @@ fn edits_take_effect_at_the_next_solve() {
 }
 
 #[test]
+fn a_removed_constraint_counts_no_more_even_before_the_next_solve() {
+    let mut solver = solver(&[[0.0; 3], [1.0, 0.0, 0.0]]);
+    let edge = solver.add_constraint("EdgeStrain", &[0, 1], 1.0).unwrap();
+    solver.edit_constraint("EdgeStrain", edge, &[2.0, 1.0, 1.0]).unwrap();
+    // ½ w L₀ (‖e‖/L − 1)² with w = L₀ = 1, ‖e‖/L = ½.
+    assert!((solver.energy() - 0.125).abs() < 1e-15);
+    assert_eq!(solver.unconstrained_count(), 0);
+    solver.remove_constraint(edge).unwrap();
+    assert_eq!(solver.energy(), 0.0);
+    assert_eq!(solver.unconstrained_count(), 2);
+}
+
+#[test]
 fn points_may_be_added_and_removed_while_nothing_refers_to_them() {
     let mut solver = solver(&[[0.0; 3], [1.0, 0.0, 0.0]]);
     solver.add_constraint("EdgeStrain", &[0, 1], 1.0).unwrap();
@@ -369,4 +382,17 @@ fn without_points_or_constraints_nothing_happens() {
     loose.init().unwrap();
     loose.solve(3).unwrap();
     assert_eq!((loose.points()[1], loose.unconstrained_count()), (DVec3::new(4.0, 5.0, 6.0), 2));
+}
+
+#[test]
+fn a_report_that_would_not_be_finite_is_refused_and_changes_nothing() {
+    // Lengths of points that are finite overflow, and so does the energy.
+    let mut solver = solver(&[[0.0; 3], [1.0, 0.0, 0.0]]);
+    solver.add_constraint("EdgeStrain", &[0, 1], 1.0).unwrap();
+    solver.init().unwrap();
+    let far = [DVec3::ZERO, DVec3::splat(1e200)];
+    solver.set_points(&far).unwrap();
+    let error = solver.solve_until(&SolveOptions::default(), &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert_eq!(error.status(), Status::InvalidValue);
+    assert_eq!(solver.points(), far);
 }

@@ -150,6 +150,17 @@ impl TypeInfo {
         Err(Error::new(Status::InvalidArgumentLength, reason).at("indices"))
     }
 
+    /// Refuses a type whose constraints have no scalars.
+    ///
+    /// # Errors
+    /// Status `InvalidConstraintType`.
+    pub fn check_editable(&self) -> Result<()> {
+        if self.scalars != Scalars::None {
+            return Ok(());
+        }
+        Err(Error::new(Status::InvalidConstraintType, format!("\"{}\" has no scalars to edit", self.name)))
+    }
+
     /// Refuses a number of scalars that a constraint of `k` points does not take.
     ///
     /// # Errors
@@ -157,9 +168,7 @@ impl TypeInfo {
     /// `InvalidValue`.
     pub fn check_scalar_count(&self, k: usize, count: usize) -> Result<()> {
         match self.scalars {
-            Scalars::None => {
-                Err(Error::new(Status::InvalidConstraintType, format!("\"{}\" has no scalars to edit", self.name)))
-            }
+            Scalars::None => self.check_editable(),
             Scalars::Named(names) if count == names.len() => Ok(()),
             Scalars::Named(names) => {
                 let list = names.iter().map(|scalar| scalar.name).collect::<Vec<_>>().join(", ");

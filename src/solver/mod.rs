@@ -172,6 +172,14 @@ impl Solver {
         Ok(first)
     }
 
+    /// Refuses an edit by what `type_name` and `id` alone decide.
+    ///
+    /// # Errors
+    /// See [`ConstraintSet::check_editable`].
+    pub fn check_editable(&self, type_name: &str, id: ConstraintId) -> Result<()> {
+        self.constraints.check_editable(type_name, id)
+    }
+
     /// Replaces the scalars of a constraint. The next solve uses them; it factorises again only if rows changed.
     ///
     /// # Errors
