@@ -60,7 +60,10 @@
 //! # Ok::<(), shapeop::error::Error>(())
 //! ```
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
+#![deny(unsafe_code)]
 
+#[allow(unsafe_code, reason = "the C boundary; nowhere else")]
+pub mod capi;
 pub mod constraints;
 pub mod error;
 pub mod linalg;
