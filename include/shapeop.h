@@ -363,12 +363,14 @@ SHAPEOP_API int shapeop_abiVersion(void);
 /**
  * Why the last call on `op` was refused, in words: the argument, what was expected, what was found. Empty if it
  * succeeded: every call but this, `shapeop_version`, `shapeop_abiVersion`, `shapeop_errorText` and `shapeop_delete` of
- * null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread only.
- * If `op` is no solver, the text is about the calling thread's last call of all.
+ * null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread only,
+ * and the success of another thread's call does not hide it. If `op` is no solver, the text is about the calling thread's
+ * last call of all.
  *
  * The text is the calling thread's own copy, valid until that thread's next call of this function.
  */
-SHAPEOP_API const char *shapeop_lastError(struct ShapeOpSolver *op);
+SHAPEOP_API
+const char *shapeop_lastError(struct ShapeOpSolver *op);
 
 /**
  * What an error code means, in words; for a number that is none, it says so. Valid as long as the library is loaded.

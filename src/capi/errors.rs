@@ -87,8 +87,9 @@ pub extern "C" fn shapeop_abiVersion() -> c_int {
 
 /// Why the last call on `op` was refused, in words: the argument, what was expected, what was found. Empty if it
 /// succeeded: every call but this, `shapeop_version`, `shapeop_abiVersion`, `shapeop_errorText` and `shapeop_delete` of
-/// null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread only.
-/// If `op` is no solver, the text is about the calling thread's last call of all.
+/// null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread only,
+/// and the success of another thread's call does not hide it. If `op` is no solver, the text is about the calling thread's
+/// last call of all.
 ///
 /// The text is the calling thread's own copy, valid until that thread's next call of this function.
 #[unsafe(no_mangle)]

@@ -15,6 +15,7 @@ use crate::solver::Solver;
 
 /// A solver. What points to it is no address but a small integer, a handle.
 #[cfg(not(shapeop_compat_header))]
+#[derive(Debug)]
 pub struct ShapeOpSolver {
     _private: [u8; 0],
 }

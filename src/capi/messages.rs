@@ -55,13 +55,15 @@ pub(super) fn keep_note(handle: Handle, note: &Error) {
     keep_for_thread(handle, Some(note));
 }
 
-/// The text of the last call on `handle`; of this thread's last call if `handle` names no solver.
+/// Why the last call on `handle` was refused; this thread's last call if `handle` names no solver. Another thread's success
+/// does not hide a refusal of this one.
 fn last(handle: Handle) -> String {
     let of_thread = LAST.try_with(|last| last.borrow().clone());
     let (own_handle, of_thread) = of_thread.unwrap_or((Handle::NONE, Message::default()));
     let Ok(slot) = handles::find(handle) else { return of_thread.text };
     let of_solver = slot.message.lock().unwrap_or_else(PoisonError::into_inner);
-    if own_handle == handle && of_thread.order > of_solver.order { of_thread.text } else { of_solver.text.clone() }
+    let is_own_newer = of_solver.text.is_empty() || of_thread.order > of_solver.order;
+    if own_handle == handle && is_own_newer { of_thread.text } else { of_solver.text.clone() }
 }
 
 /// [`last`] as C text that stays valid until this thread's next call.

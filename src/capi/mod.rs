@@ -127,6 +127,8 @@ fn c_count(count: usize) -> Result<c_int> {
 
 #[cfg(test)]
 mod tests {
+    use std::ffi::CStr;
+
     use super::*;
 
     #[test]
@@ -134,7 +136,8 @@ mod tests {
         let op = shapeop_create();
         let other = shapeop_create();
         assert_eq!(guard(op, |_| -> Result<()> { panic!("sum of {}", 7) }), Err(Status::Internal));
-        let message = |op| unsafe { std::ffi::CStr::from_ptr(shapeop_lastError(op)) }.to_str().unwrap().to_owned();
+        // SAFETY: the text is valid until this thread's next call of `shapeop_lastError`.
+        let message = |op| unsafe { CStr::from_ptr(shapeop_lastError(op)) }.to_str().unwrap().to_owned();
         assert_eq!(message(op), "an error inside the library, please report it: sum of 7");
         assert_eq!(guard(op, |_| Ok(())), Err(Status::Internal));
         assert!(message(op).contains("earlier"), "{}", message(op));

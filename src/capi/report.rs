@@ -8,7 +8,7 @@ use super::arguments::{check_pointer, write};
 use super::handles::{Handle, ShapeOpSolver};
 use super::points::check_count;
 use super::structs::{self, SizedStruct};
-use super::{code, current, messages, guard, guard_free, guard_read, shapeop_err};
+use super::{code, current, guard, guard_free, guard_read, messages, shapeop_err};
 use crate::error::{Error, Result, Status};
 use crate::solver::{Outcome, Progress, Report, SolveOptions};
 
@@ -94,11 +94,8 @@ pub type shapeop_progress_callback =
 
 // SAFETY: `repr(C)`, `struct_size` first.
 unsafe impl SizedStruct for shapeop_solve_options {
-    const SIZES: &'static [usize] = &[
-        offset_of!(Self, tolerance),
-        offset_of!(Self, time_budget_seconds),
-        size_of::<shapeop_solve_options>(),
-    ];
+    const SIZES: &'static [usize] =
+        &[offset_of!(Self, tolerance), offset_of!(Self, time_budget_seconds), size_of::<shapeop_solve_options>()];
 }
 
 // SAFETY: `repr(C)`, `struct_size` first.
@@ -151,10 +148,11 @@ pub unsafe extern "C" fn shapeop_solveUntil(
     let handle = Handle::new(op);
     let mut note = None;
     let result = code(guard(op, |solver| {
-        // SAFETY: the caller vouches for so many bytes as `struct_size` says; numbers are valid for any bytes.
-        let options = match options.is_null() {
-            true => default_options(),
-            false => unsafe { structs::read("options", options, default_options())? },
+        let options = if options.is_null() {
+            default_options()
+        } else {
+            // SAFETY: the caller vouches for so many bytes as `struct_size` says; numbers are valid for any bytes.
+            unsafe { structs::read("options", options, default_options())? }
         };
         // SAFETY: the caller vouches for `struct_size`.
         let report_size = if report.is_null() { 0 } else { unsafe { structs::size("report", report)? } };

@@ -29,7 +29,8 @@ const COMPAT_NAMES: [&str; 2] = ["libShapeOp.so", "ShapeOp.0.1.0.dll"];
 
 /// Builds the library and fills `folder`: `lib/`, `include/`, `compat/`.
 pub fn run(folder: &Path, profile: &str) -> Result<()> {
-    shell::run(shell::cargo().args(["build", "--quiet", "--package", "shapeop", "--lib", "--profile", profile]))?;
+    // With the workspace's selection of packages, so that what `cargo test --workspace` built is used.
+    shell::run(shell::cargo().args(["build", "--quiet", "--workspace", "--lib", "--profile", profile]))?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| shell::root().join("target"), Into::into);
     // The profiles dev and test build into `debug`.
     let built = target.join(if profile == "dev" || profile == "test" { "debug" } else { profile });
