@@ -27,8 +27,8 @@ impl Language {
     /// The standard and the warnings that our sources keep to.
     pub fn strict(self) -> &'static [&'static str] {
         match self {
-            Self::C => &["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror"],
-            Self::Cpp => &["-std=c++17", "-pedantic", "-Wall", "-Wextra", "-Werror"],
+            Self::C => &["-xc", "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror"],
+            Self::Cpp => &["-xc++", "-std=c++17", "-pedantic", "-Wall", "-Wextra", "-Werror"],
         }
     }
 }
@@ -92,36 +92,41 @@ pub fn said(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
-/// True if programs can be built and run under AddressSanitizer.
-fn has_sanitizer(compiler: &str) -> bool {
-    let folder = scratch("sanitizer");
+/// True if programs can be built and run under the sanitizers.
+fn has_sanitizer(language: Language, compiler: &str) -> bool {
+    let folder = scratch(&format!("sanitizer-{language:?}-{:?}", std::thread::current().id()));
     let (source, program) = (folder.join("none.c"), folder.join("none"));
     fs::write(&source, "int main(void) { return 0; }\n").unwrap();
     let mut build = Command::new(compiler);
-    build.args(["-x", "c", "-fsanitize=address"]).arg(&source).arg("-o").arg(&program);
+    build.args(["-fsanitize=address,undefined", "-x", "c"]).arg(&source).arg("-o").arg(&program);
     build.output().is_ok_and(|output| output.status.success())
         && Command::new(&program).output().is_ok_and(|output| output.status.success())
 }
 
-/// Builds `source` (in `tests/`) against the library `name` in `folder` of the distribution, and runs it.
-pub fn build_and_run(language: Language, source: &str, folder: &str, name: &str, arguments: &[&str]) -> Option<Output> {
+/// Builds `source` (in `tests/`) against the library `name` in `folder` of the distribution, and runs it. An old program,
+/// in `compat`, sees only that folder.
+pub fn build_and_run(language: Language, source: &str, folder: &str, name: &str) -> Option<Output> {
     let compiler = compiler(language)?;
     let libraries = dist().join(folder);
-    let headers = dist().join(if folder == "compat" { "compat" } else { "include" });
-    let program = scratch(&source.replace(['/', '.'], "-")).join(format!("program{EXE_SUFFIX}"));
+    let program =
+        scratch(&format!("{language:?}-{}", source.replace(['/', '.'], "-"))).join(format!("program{EXE_SUFFIX}"));
     let mut command = Command::new(&compiler);
     command.args(language.strict()).args(["-g", "-O1"]);
-    if has_sanitizer(&compiler) {
+    if has_sanitizer(language, &compiler) {
         command.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer"]);
     } else {
         leave_out(&format!("AddressSanitizer for {source}, as {compiler} has none"));
     }
-    command.arg("-I").arg(headers).arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(source));
+    command.arg("-I").arg(dist().join("compat"));
+    if folder != "compat" {
+        command.arg("-I").arg(dist().join("include"));
+    }
+    command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(source));
     command.arg("-L").arg(&libraries).arg(format!("-l{name}")).args(["-lm", "-lpthread", "-o"]).arg(&program);
     command.arg(format!("-Wl,-rpath,{}", libraries.display()));
     let built = command.output().unwrap();
     assert!(built.status.success(), "{source}: {}", said(&built));
-    let output = Command::new(&program).args(arguments).output().unwrap();
+    let output = Command::new(&program).output().unwrap();
     assert!(output.status.success(), "{source} ended with {}: {}", output.status, said(&output));
     Some(output)
 }
