@@ -396,3 +396,30 @@ fn a_report_that_would_not_be_finite_is_refused_and_changes_nothing() {
     assert_eq!(error.status(), Status::InvalidValue);
     assert_eq!(solver.points(), far);
 }
+
+#[test]
+fn a_refused_solve_leaves_the_energy_as_it_was() {
+    // Refused because a force acts along a free motion, because the step overflows, and because the mass does.
+    let mut solver = solver(&WARPED);
+    solver.add_constraint("Plane", &[0, 1, 2, 3], 1.0).unwrap();
+    let push = |z| Force::Vertex { force: DVec3::Z * z, point: 0 };
+    solver.add_force(push(1.0)).unwrap();
+    let back = solver.add_force(push(-1.0)).unwrap();
+    solver.init().unwrap();
+    solver.solve(1).unwrap();
+    let energy = solver.energy();
+    solver.remove_force(back).unwrap();
+    assert_eq!(solver.solve(1).unwrap_err().status(), Status::Unbounded);
+    assert_eq!(solver.energy(), energy);
+
+    solver.init_dynamic(1.0, 1.0, 0.5).unwrap();
+    solver.solve(1).unwrap();
+    let (energy, points) = (solver.energy(), solver.points().to_vec());
+    assert!(energy > 0.0);
+    solver.add_force(push(1e308)).unwrap();
+    solver.set_timestep(1e10).unwrap();
+    assert_eq!(solver.solve(1).unwrap_err().status(), Status::InvalidValue);
+    assert_eq!((solver.energy(), solver.points()), (energy, points.as_slice()));
+    assert!(solver.init_dynamic(1e308, 1.0, 1e-300).is_err());
+    assert_eq!((solver.energy(), solver.points()), (energy, points.as_slice()));
+}

@@ -68,22 +68,25 @@ impl Solver {
     }
 
     /// Brings the system up to date, sets up the external terms, runs `iterations` and, in dynamic mode, ends the time
-    /// step. `iterations` returns false where a number overflowed. Restores the points if anything fails.
+    /// step. `iterations` returns false where a number overflowed. If anything fails, points and energy are as before.
     fn run(&mut self, iterations: impl FnOnce(&mut Self) -> bool) -> Result<()> {
         self.prepare()?;
-        self.begin()?;
-        let is_finite = iterations(self) && self.points.iter().all(|point| point.is_finite());
-        if is_finite && self.end_step() {
-            return Ok(());
+        self.workspace.swap_external();
+        let result = self.begin().and_then(|()| {
+            let is_finite = iterations(self) && self.points.iter().all(|point| point.is_finite());
+            if is_finite && self.end_step() { Ok(()) } else { Err(overflow()) }
+        });
+        if result.is_err() {
+            self.points.copy_from_slice(&self.workspace.start);
+            self.workspace.swap_external();
         }
-        self.points.copy_from_slice(&self.workspace.start);
-        Err(overflow())
+        result
     }
 
     /// Computes the external terms and, in dynamic mode, moves the points to `y`.
     fn begin(&mut self) -> Result<()> {
         let (Some(system), Some(dynamics)) = (&mut self.system, &self.dynamics) else { return Ok(()) };
-        let Workspace { forces, external, momentum, start } = &mut self.workspace;
+        let Workspace { forces, external, momentum, kept, start } = &mut self.workspace;
         start.clear();
         start.extend_from_slice(&self.points);
         forces.resize(self.points.len(), DVec3::ZERO);
@@ -103,6 +106,10 @@ impl Solver {
                 external.extend(momentum.iter().map(|y| inertia * *y));
                 self.points.copy_from_slice(momentum);
             }
+        }
+        // The next call exchanges them, and should not allocate then.
+        for (kept, current) in kept.iter_mut().zip([external, momentum]) {
+            kept.reserve(current.len().saturating_sub(kept.len()));
         }
         Ok(())
     }

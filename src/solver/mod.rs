@@ -75,6 +75,8 @@ struct Workspace {
     external: Vec<DVec3>,
     /// Where momentum alone takes the points (dynamic mode).
     momentum: Vec<DVec3>,
+    /// `external` and `momentum` of the call before, for when this one is refused.
+    kept: [Vec<DVec3>; 2],
     /// The points at the start of the call.
     start: Vec<DVec3>,
 }
@@ -86,6 +88,15 @@ impl std::fmt::Debug for Solver {
             .field("constraint_count", &self.constraint_count())
             .field("force_count", &self.force_count())
             .finish_non_exhaustive()
+    }
+}
+
+impl Workspace {
+    /// Exchanges `external` and `momentum` with what is kept: before they are computed anew, and again if that is refused.
+    fn swap_external(&mut self) {
+        let [external, momentum] = &mut self.kept;
+        std::mem::swap(&mut self.external, external);
+        std::mem::swap(&mut self.momentum, momentum);
     }
 }
 
@@ -326,8 +337,6 @@ impl Solver {
         let inertia_before = before.as_ref().filter(|old| old.mode == Mode::Dynamic).map_or(0.0, Dynamics::inertia);
         let new = Dynamics { mode, mass, damping, timestep, initial_timestep: timestep, velocities };
         let inertia = if mode == Mode::Dynamic { new.inertia() } else { 0.0 };
-        self.workspace.external.clear();
-        self.workspace.momentum.clear();
         if inertia != inertia_before {
             self.invalidate();
         }
@@ -336,6 +345,9 @@ impl Solver {
         if prepared.is_err() {
             self.dynamics = before;
             self.invalidate();
+        } else {
+            self.workspace.external.clear();
+            self.workspace.momentum.clear();
         }
         prepared
     }
