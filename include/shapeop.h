@@ -2,27 +2,28 @@
  *
  * Generated from the sources of the library: do not edit.
  *
- * Handles. A ShapeOpSolver* is a small integer (nonzero, below 2^31), not an address: never dereference it. A null handle,
- * one that was deleted, and one that never was a solver's are recognised and refused. Only the low 32 bits count.
+ * Handles. A ShapeOpSolver* is a small integer (nonzero, below 2^31), not an address: never dereference it. A null
+ * handle, one that was deleted, and one that never was a solver's are recognised and refused. Only the low 32 bits
+ * count.
  *
- * Ownership. Every solver of shapeop_create belongs to the caller, who deletes it with shapeop_delete. Arrays belong to the
- * caller: the library copies what it reads and keeps no pointer. Texts belong to the library and are never freed; how long
- * they stay valid is said with each function.
+ * Ownership. Every solver of shapeop_create belongs to the caller, who deletes it with shapeop_delete. Arrays belong
+ * to the caller: the library copies what it reads and keeps no pointer. Texts belong to the library and are never
+ * freed; how long they stay valid is said with each function.
  *
- * Arrays. Points are double[3 * n]: x y z of point 0, then of point 1, and so on. Lengths of points are counted in points,
- * all others in entries. An array of length 0 may be null. Results are written only if the call succeeds.
+ * Arrays. Points are double[3 * n]: x y z of point 0, then of point 1, and so on. Lengths of points are counted in
+ * points, all others in entries. An array of length 0 may be null. Results are written only if the call succeeds.
  *
  * Errors. A refused call changes nothing, and answers with an error code, with 1 (shapeop_init, shapeop_initDynamic,
- * shapeop_solve), with -1 (ids, counts, truths) or with null (shapeop_create, shapeop_constraintIndexName). In all cases,
- * functions without a result included, shapeop_lastError then says why, and its text is empty after a call that succeeded.
- * Numbers that are not finite are refused where they enter, and none is ever handed out.
+ * shapeop_solve), with -1 (ids, counts, truths) or with null (shapeop_create, shapeop_constraintIndexName). In all
+ * cases, functions without a result included, shapeop_lastError then says why, and its text is empty after a call
+ * that succeeded. Numbers that are not finite are refused where they enter, and none is ever handed out.
  *
- * Threads. Any thread may use any solver. A call on a solver that another call is using does not wait: it is refused as
- * busy. Different solvers can be used at the same time. From inside its own progress callback a solver can be read
+ * Threads. Any thread may use any solver. A call on a solver that another call is using does not wait: it is refused
+ * as busy. Different solvers can be used at the same time. From inside its own progress callback a solver can be read
  * (points, counts, energy, violations) and nothing else.
  *
- * Units. Lengths are in model units, angles in radians, times in seconds; what a violation is measured in depends on the
- * type of its constraint: see shapeop_constraint_type.
+ * Units. Lengths are in model units, angles in radians, times in seconds; what a violation is measured in depends on
+ * the type of its constraint: see shapeop_constraint_type.
  *
  * Versions. Structs begin with struct_size, to be set to their sizeof: fields may be added at their ends. */
 
@@ -40,8 +41,8 @@
 #endif
 
 /**
- * The version of the ABI that `shapeop_abiVersion` answers: raised when a caller must know of a change. Functions, error
- * codes and fields at the end of structs may be added without that.
+ * The version of the ABI that `shapeop_abiVersion` answers: raised when a caller must know of a change. Functions,
+ * error codes and fields at the end of structs may be added without that.
  */
 #define SHAPEOP_ABI_VERSION 1
 
@@ -156,7 +157,8 @@ typedef enum shapeop_outcome {
      */
     SO_OUTCOME_STALLED = 4,
     /**
-     * A force acts along a motion that no constraint resists, and the points did not move. `shapeop_lastError` says which.
+     * A force acts along a motion that no constraint resists, and the points did not move. `shapeop_lastError` says
+     * which.
      */
     SO_OUTCOME_UNBOUNDED = 5,
 } shapeop_outcome;
@@ -185,8 +187,8 @@ typedef struct shapeop_constraint_type {
      */
     int greatest_indices;
     /**
-     * The number of scalars of an edit; 0: it cannot be edited; -1: shapes, any positive multiple of 3 times the number
-     * of indices (x y z of each point of each shape).
+     * The number of scalars of an edit; 0: it cannot be edited; -1: shapes, any positive multiple of 3 times the
+     * number of indices (x y z of each point of each shape).
      */
     int scalar_count;
     /**
@@ -291,8 +293,8 @@ typedef struct shapeop_progress {
 } shapeop_progress;
 
 /**
- * Called after every iteration, on the thread that called `shapeop_solveUntil`. Returns 0 to go on; anything else ends the
- * solve, and what was reached is kept. It must return: no exception, no `longjmp`.
+ * Called after every iteration, on the thread that called `shapeop_solveUntil`. Returns 0 to go on; anything else ends
+ * the solve, and what was reached is kept. It must return: no exception, no `longjmp`.
  */
 typedef int (*shapeop_progress_callback)(const struct shapeop_progress *progress, void *user);
 
@@ -363,14 +365,13 @@ SHAPEOP_API int shapeop_abiVersion(void);
 /**
  * Why the last call on `op` was refused, in words: the argument, what was expected, what was found. Empty if it
  * succeeded: every call but this, `shapeop_version`, `shapeop_abiVersion`, `shapeop_errorText` and `shapeop_delete` of
- * null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread only,
- * and the success of another thread's call does not hide it. If `op` is no solver, the text is about the calling thread's
- * last call of all.
+ * null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread
+ * only, and the success of another thread's call does not hide it. If `op` is no solver, the text is about the calling
+ * thread's last call of all.
  *
  * The text is the calling thread's own copy, valid until that thread's next call of this function.
  */
-SHAPEOP_API
-const char *shapeop_lastError(struct ShapeOpSolver *op);
+SHAPEOP_API const char *shapeop_lastError(struct ShapeOpSolver *op);
 
 /**
  * What an error code means, in words; for a number that is none, it says so. Valid as long as the library is loaded.
@@ -388,27 +389,23 @@ SHAPEOP_API struct ShapeOpSolver *shapeop_create(void);
 SHAPEOP_API void shapeop_delete(struct ShapeOpSolver *op);
 
 /**
- * Prepares for static solving from the current points: masses, damping and time step are 1, velocities start at zero. May
- * be called again at any time. Returns 0, or 1 if the system cannot be factorised (numbers too large).
+ * Prepares for static solving from the current points: masses, damping and time step are 1, velocities start at zero.
+ * May be called again at any time. Returns 0, or 1 if the system cannot be factorised (numbers too large).
  */
-SHAPEOP_API
-int shapeop_init(struct ShapeOpSolver *op);
+SHAPEOP_API int shapeop_init(struct ShapeOpSolver *op);
 
 /**
  * Prepares for dynamic solving from the current points with zero velocities. `masses` is that of every point, above 0;
- * `damping` the factor on velocities after each step, at least 0; `timestep` is above 0. Returns 0, or 1 if one of them is
- * not so or the system cannot be factorised; the solver is then as before.
+ * `damping` the factor on velocities after each step, at least 0; `timestep` is above 0. Returns 0, or 1 if one of
+ * them is not so or the system cannot be factorised; the solver is then as before.
  */
-SHAPEOP_API
-int shapeop_initDynamic(struct ShapeOpSolver *op,
-                        double masses,
-                        double damping,
-                        double timestep);
+SHAPEOP_API int shapeop_initDynamic(struct ShapeOpSolver *op, double masses, double damping, double timestep);
 
 /**
  * Static: so many local/global iterations from the current points. Dynamic: one time step with so many iterations.
- * Changes since the last call, of constraints too, take effect. Returns 0, or 1 with the points as before if the solver
- * was not initialised, if a force acts along a motion that no constraint resists, or if the numbers became too large.
+ * Changes since the last call, of constraints too, take effect. Returns 0, or 1 with the points as before if the
+ * solver was not initialised, if a force acts along a motion that no constraint resists, or if the numbers became too
+ * large.
  */
 SHAPEOP_API int shapeop_solve(struct ShapeOpSolver *op, unsigned int iteration);
 
@@ -419,12 +416,10 @@ SHAPEOP_API int shapeop_solve(struct ShapeOpSolver *op, unsigned int iteration);
 SHAPEOP_API void shapeop_setTimeStep(struct ShapeOpSolver *op, double timestep);
 
 /**
- * Changes the damping of the following steps. Before initialisation it has no effect. A damping that is not finite and at
- * least 0 changes nothing.
+ * Changes the damping of the following steps. Before initialisation it has no effect. A damping that is not finite and
+ * at least 0 changes nothing.
  */
-SHAPEOP_API
-void shapeop_setDamping(struct ShapeOpSolver *op,
-                        double damping);
+SHAPEOP_API void shapeop_setDamping(struct ShapeOpSolver *op, double damping);
 
 /**
  * Sets the number of threads for large problems, at most 1024; 0, the default: as many as the machine has. The results
@@ -433,29 +428,23 @@ void shapeop_setDamping(struct ShapeOpSolver *op,
 SHAPEOP_API enum shapeop_err shapeop_setThreadCount(struct ShapeOpSolver *op, int nb_threads);
 
 /**
- * Replaces the positions: `points` holds `x0 y0 z0 x1 ...` in model units. Rest states, targets and velocities stay. Their
- * number may change as long as no constraint or force refers beyond it; added points start at rest. Refused, with nothing
- * changed, if it may not, or if a coordinate is not finite.
+ * Replaces the positions: `points` holds `x0 y0 z0 x1 ...` in model units. Rest states, targets and velocities stay.
+ * Their number may change as long as no constraint or force refers beyond it; added points start at rest. Refused,
+ * with nothing changed, if it may not, or if a coordinate is not finite.
  *
  * # Safety
  * `points` is null or readable for `3 * nb_points` doubles.
  */
-SHAPEOP_API
-void shapeop_setPoints(struct ShapeOpSolver *op,
-                       double *points,
-                       int nb_points);
+SHAPEOP_API void shapeop_setPoints(struct ShapeOpSolver *op, double *points, int nb_points);
 
 /**
- * Copies the positions to `points` as `x0 y0 z0 x1 ...` in model units. `nb_points` must be the solver's number of points;
- * otherwise nothing is written. From inside the progress callback: the current iterate.
+ * Copies the positions to `points` as `x0 y0 z0 x1 ...` in model units. `nb_points` must be the solver's number of
+ * points; otherwise nothing is written. From inside the progress callback: the current iterate.
  *
  * # Safety
  * `points` is null or writable for `3 * nb_points` doubles.
  */
-SHAPEOP_API
-void shapeop_getPoints(struct ShapeOpSolver *op,
-                       double *points,
-                       int nb_points);
+SHAPEOP_API void shapeop_getPoints(struct ShapeOpSolver *op, double *points, int nb_points);
 
 /**
  * The number of points, or -1.
@@ -469,8 +458,8 @@ SHAPEOP_API int shapeop_unconstrainedCount(struct ShapeOpSolver *op);
 
 /**
  * Adds a constraint with its type's default scalars, at rest where the points are now. `ids` are point indices.
- * Returns its id (they count up from 0 and are never reused), or -1 if the type is unknown, their number does not fit the
- * type, one is out of range, or `weight` is negative or not finite.
+ * Returns its id (they count up from 0 and are never reused), or -1 if the type is unknown, their number does not fit
+ * the type, one is out of range, or `weight` is negative or not finite.
  *
  * # Safety
  * `constraint_type` is null or ends with a zero; `ids` is null or readable for `nb_ids` ints.
@@ -489,9 +478,9 @@ int shapeop_addConstraint(struct ShapeOpSolver *op,
  * - `counts`: the number of indices of each. `nb_counts` 1: the same for all, so there are `nb_ids / counts[0]`
  *   constraints; otherwise one per constraint.
  * - `weights`: `nb_weights` 1: the same for all; otherwise one per constraint.
- * - `scalars`: scalar sets behind each other, `nb_scalars` numbers in all. `nb_scalar_sets` 0: the defaults of the type;
- *   1: one set for all; otherwise one per constraint. For types that take shapes every set has the same number of shapes,
- *   each of its own constraint's number of points.
+ * - `scalars`: scalar sets behind each other, `nb_scalars` numbers in all. `nb_scalar_sets` 0: the defaults of the
+ *   type; 1: one set for all; otherwise one per constraint. For types that take shapes every set has the same number
+ *   of shapes, each of its own constraint's number of points.
  * - `flags`: 0. Unknown bits are refused.
  * - `constraint_ids`: null, or where the ids go, one int per constraint.
  *
@@ -518,8 +507,8 @@ enum shapeop_err shapeop_addConstraints(struct ShapeOpSolver *op,
  * Replaces the scalars of a constraint, of the type that it was added with; "Similarity" and "Rigid" may edit each
  * other's. The next solve uses them. Scalars already in force change nothing and cost nothing.
  *
- * Decided in this order: the type cannot be edited (1); the id is no constraint of that type (3); the number of scalars
- * does not fit (2); a scalar is outside its domain or not finite (16).
+ * Decided in this order: the type cannot be edited (1); the id is no constraint of that type (3); the number of
+ * scalars does not fit (2); a scalar is outside its domain or not finite (16).
  *
  * # Safety
  * `constraint_type` is null or ends with a zero; `scalars` is null or readable for `nb_scl` doubles.
@@ -553,8 +542,9 @@ SHAPEOP_API int shapeop_constraintCount(struct ShapeOpSolver *op);
 SHAPEOP_API int shapeop_isConstraint(struct ShapeOpSolver *op, int constraint_id);
 
 /**
- * 1 if the rest state of the constraint spans too little to say what it asks for (a zero-length edge, a flat triangle);
- * it then asks for less or for nothing, as its type's documentation says. 0 if not; -1 if the call is refused.
+ * 1 if the rest state of the constraint spans too little to say what it asks for (a zero-length edge, a flat
+ * triangle); it then asks for less or for nothing, as its type's documentation says. 0 if not; -1 if the call is
+ * refused.
  */
 SHAPEOP_API int shapeop_isDegenerate(struct ShapeOpSolver *op, int constraint_id);
 
@@ -567,16 +557,13 @@ SHAPEOP_API int shapeop_isDegenerate(struct ShapeOpSolver *op, int constraint_id
 SHAPEOP_API int shapeop_addGravityForce(struct ShapeOpSolver *op, double *force);
 
 /**
- * Adds a force on the point `id`; `force` is its 3 components. Returns the force's id, or -1 if the point is out of range
- * or the force is not finite.
+ * Adds a force on the point `id`; `force` is its 3 components. Returns the force's id, or -1 if the point is out of
+ * range or the force is not finite.
  *
  * # Safety
  * `force` is null or readable for 3 doubles.
  */
-SHAPEOP_API
-int shapeop_addVertexForce(struct ShapeOpSolver *op,
-                           double *force,
-                           int id);
+SHAPEOP_API int shapeop_addVertexForce(struct ShapeOpSolver *op, double *force, int id);
 
 /**
  * Replaces the vertex force `force_id` by `force` on the point `id`. Refused, with nothing changed, if it is no vertex
@@ -616,8 +603,8 @@ SHAPEOP_API int shapeop_constraintTypeCount(void);
 SHAPEOP_API enum shapeop_err shapeop_constraintType(int index, struct shapeop_constraint_type *out);
 
 /**
- * Describes the scalar `scalar_index` of the constraint type `index` in `out`, whose `struct_size` must be set. Types that
- * take shapes have no scalars to describe.
+ * Describes the scalar `scalar_index` of the constraint type `index` in `out`, whose `struct_size` must be set. Types
+ * that take shapes have no scalars to describe.
  *
  * # Safety
  * `out` is null, or its `struct_size` is set and it is writable for so many bytes.
@@ -628,12 +615,10 @@ enum shapeop_err shapeop_constraintScalar(int index,
                                           struct shapeop_constraint_scalar *out);
 
 /**
- * What the point index `index_position` of a constraint of the type `index` means, such as "apex"; null if there is no such
- * type or its `index_name_count` is not above `index_position`. Valid as long as the library is loaded.
+ * What the point index `index_position` of a constraint of the type `index` means, such as "apex"; null if there is no
+ * such type or its `index_name_count` is not above `index_position`. Valid as long as the library is loaded.
  */
-SHAPEOP_API
-const char *shapeop_constraintIndexName(int index,
-                                        int index_position);
+SHAPEOP_API const char *shapeop_constraintIndexName(int index, int index_position);
 
 /**
  * Writes the default options to `options`, whose `struct_size` must be set.
@@ -644,9 +629,10 @@ const char *shapeop_constraintIndexName(int index,
 SHAPEOP_API enum shapeop_err shapeop_defaultSolveOptions(struct shapeop_solve_options *options);
 
 /**
- * Iterates until `options` (null: the defaults) say to stop; in dynamic mode within one time step. `progress` may be null;
- * it is called with `user` after every iteration. While it runs, reading calls on `op` from it answer with the current
- * iterate, and all other calls are refused as busy. `report` is null, or its `struct_size` is set; it is written on success.
+ * Iterates until `options` (null: the defaults) say to stop; in dynamic mode within one time step. `progress` may be
+ * null; it is called with `user` after every iteration. While it runs, reading calls on `op` from it answer with the
+ * current iterate, and all other calls are refused as busy. `report` is null, or its `struct_size` is set; it is
+ * written on success.
  *
  * A force along a motion that no constraint resists is the outcome `SO_OUTCOME_UNBOUNDED` of a successful call.
  *
@@ -662,27 +648,22 @@ enum shapeop_err shapeop_solveUntil(struct ShapeOpSolver *op,
                                     struct shapeop_solve_report *report);
 
 /**
- * Writes the energy at the current points to `out`: half the sum of the weighted squared distances to the projections, in
- * static mode minus the potential of the forces, in dynamic mode plus the inertia of the last step.
+ * Writes the energy at the current points to `out`: half the sum of the weighted squared distances to the projections,
+ * in static mode minus the potential of the forces, in dynamic mode plus the inertia of the last step.
  *
  * # Safety
  * `out` is null or writable for one double.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_energy(struct ShapeOpSolver *op,
-                                double *out);
+SHAPEOP_API enum shapeop_err shapeop_energy(struct ShapeOpSolver *op, double *out);
 
 /**
- * Writes the violation of every constraint id at the current points to `out`, each in its type's unit; 0 for removed ones.
- * `nb` must be `shapeop_constraintCount`; otherwise nothing is written.
+ * Writes the violation of every constraint id at the current points to `out`, each in its type's unit; 0 for removed
+ * ones. `nb` must be `shapeop_constraintCount`; otherwise nothing is written.
  *
  * # Safety
  * `out` is null or writable for `nb` doubles.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_getViolations(struct ShapeOpSolver *op,
-                                       double *out,
-                                       int nb);
+SHAPEOP_API enum shapeop_err shapeop_getViolations(struct ShapeOpSolver *op, double *out, int nb);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -435,8 +435,8 @@ fn a_solver_that_another_thread_solves_is_busy_and_nobody_waits() {
         let abi = &abi;
         let solve = scope.spawn(move || {
             let mut pause_state = Pause { is_solving, go_on };
-            // SAFETY: the callback's user pointer is what it expects.
             let user = (&raw mut pause_state).cast();
+            // SAFETY: the callback's user pointer is what it expects.
             unsafe { shapeop_solveUntil(abi.0, ptr::null(), Some(pause), user, ptr::null_mut()) }
         });
         solving.recv().unwrap();

@@ -255,7 +255,7 @@ mistakes! {
             shapeop_delete(abi.0);
             let is_busy = abi.init() == 1 && abi.solve(1) == 1 && abi.add("Plane", &[0, 1, 2], 1.0) == -1;
             let is_told = abi.message().contains("busy");
-            let is_readable = abi.points().len() == 12 && abi.energy().0 == SO_SUCCESS && abi.violations(5).0 == SO_SUCCESS;
+            let is_readable = abi.points().len() == 12 && (abi.energy().0, abi.violations(5).0) == (SO_SUCCESS, SO_SUCCESS);
             c_int::from(!(is_busy && is_told && is_readable))
         }
         let abi = warped();

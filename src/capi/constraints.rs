@@ -10,8 +10,8 @@ use crate::error::{Error, Result, Status};
 use crate::solver::Solver;
 
 /// Adds a constraint with its type's default scalars, at rest where the points are now. `ids` are point indices.
-/// Returns its id (they count up from 0 and are never reused), or -1 if the type is unknown, their number does not fit the
-/// type, one is out of range, or `weight` is negative or not finite.
+/// Returns its id (they count up from 0 and are never reused), or -1 if the type is unknown, their number does not fit
+/// the type, one is out of range, or `weight` is negative or not finite.
 ///
 /// # Safety
 /// `constraint_type` is null or ends with a zero; `ids` is null or readable for `nb_ids` ints.
@@ -46,9 +46,9 @@ pub unsafe extern "C" fn shapeop_addConstraint(
 /// - `counts`: the number of indices of each. `nb_counts` 1: the same for all, so there are `nb_ids / counts[0]`
 ///   constraints; otherwise one per constraint.
 /// - `weights`: `nb_weights` 1: the same for all; otherwise one per constraint.
-/// - `scalars`: scalar sets behind each other, `nb_scalars` numbers in all. `nb_scalar_sets` 0: the defaults of the type;
-///   1: one set for all; otherwise one per constraint. For types that take shapes every set has the same number of shapes,
-///   each of its own constraint's number of points.
+/// - `scalars`: scalar sets behind each other, `nb_scalars` numbers in all. `nb_scalar_sets` 0: the defaults of the
+///   type; 1: one set for all; otherwise one per constraint. For types that take shapes every set has the same number
+///   of shapes, each of its own constraint's number of points.
 /// - `flags`: 0. Unknown bits are refused.
 /// - `constraint_ids`: null, or where the ids go, one int per constraint.
 ///
@@ -104,8 +104,8 @@ pub unsafe extern "C" fn shapeop_addConstraints(
 /// Replaces the scalars of a constraint, of the type that it was added with; "Similarity" and "Rigid" may edit each
 /// other's. The next solve uses them. Scalars already in force change nothing and cost nothing.
 ///
-/// Decided in this order: the type cannot be edited (1); the id is no constraint of that type (3); the number of scalars
-/// does not fit (2); a scalar is outside its domain or not finite (16).
+/// Decided in this order: the type cannot be edited (1); the id is no constraint of that type (3); the number of
+/// scalars does not fit (2); a scalar is outside its domain or not finite (16).
 ///
 /// # Safety
 /// `constraint_type` is null or ends with a zero; `scalars` is null or readable for `nb_scl` doubles.
@@ -156,8 +156,9 @@ pub extern "C" fn shapeop_isConstraint(op: *mut ShapeOpSolver, constraint_id: c_
     }))
 }
 
-/// 1 if the rest state of the constraint spans too little to say what it asks for (a zero-length edge, a flat triangle);
-/// it then asks for less or for nothing, as its type's documentation says. 0 if not; -1 if the call is refused.
+/// 1 if the rest state of the constraint spans too little to say what it asks for (a zero-length edge, a flat
+/// triangle); it then asks for less or for nothing, as its type's documentation says. 0 if not; -1 if the call is
+/// refused.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_isDegenerate(op: *mut ShapeOpSolver, constraint_id: c_int) -> c_int {
     number(guard_read(op, |solver| {

@@ -1,7 +1,7 @@
 //! The solves that this thread is inside of, for the time of their progress callbacks.
 //!
-//! A callback may read its own solver although the solve holds its lock: the solve lends it a shared reference, which is
-//! kept here while the callback runs.
+//! A callback may read its own solver although the solve holds its lock: the solve lends it a shared reference, which
+//! is kept here while the callback runs.
 
 use std::cell::RefCell;
 use std::ops::Deref;
@@ -39,8 +39,8 @@ impl Deref for Lent {
 
     fn deref(&self) -> &Solver {
         // SAFETY: `lend` put the pointer there from a reference that outlives the callback, and takes it away when the
-        // callback ends. Whoever holds a `Lent` runs inside that callback, on its thread: `solver` is the only maker, and
-        // its callers drop it before they return to the callback.
+        // callback ends. Whoever holds a `Lent` runs inside that callback, on its thread: `solver` is the only maker,
+        // and its callers drop it before they return to the callback.
         unsafe { self.0.as_ref() }
     }
 }

@@ -7,8 +7,8 @@ use super::handles::{Handle, ShapeOpSolver};
 use super::messages;
 use crate::error::Status;
 
-/// The version of the ABI that `shapeop_abiVersion` answers: raised when a caller must know of a change. Functions, error
-/// codes and fields at the end of structs may be added without that.
+/// The version of the ABI that `shapeop_abiVersion` answers: raised when a caller must know of a change. Functions,
+/// error codes and fields at the end of structs may be added without that.
 pub const SHAPEOP_ABI_VERSION: c_int = 1;
 
 /// Why a call was refused. The numbers are frozen: 0 to 3 are those of libShapeOp 0.1.0, new ones are added from 16 up.
@@ -87,9 +87,9 @@ pub extern "C" fn shapeop_abiVersion() -> c_int {
 
 /// Why the last call on `op` was refused, in words: the argument, what was expected, what was found. Empty if it
 /// succeeded: every call but this, `shapeop_version`, `shapeop_abiVersion`, `shapeop_errorText` and `shapeop_delete` of
-/// null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread only,
-/// and the success of another thread's call does not hide it. If `op` is no solver, the text is about the calling thread's
-/// last call of all.
+/// null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread
+/// only, and the success of another thread's call does not hide it. If `op` is no solver, the text is about the calling
+/// thread's last call of all.
 ///
 /// The text is the calling thread's own copy, valid until that thread's next call of this function.
 #[unsafe(no_mangle)]

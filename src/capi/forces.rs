@@ -21,8 +21,8 @@ pub unsafe extern "C" fn shapeop_addGravityForce(op: *mut ShapeOpSolver, force: 
     }))
 }
 
-/// Adds a force on the point `id`; `force` is its 3 components. Returns the force's id, or -1 if the point is out of range
-/// or the force is not finite.
+/// Adds a force on the point `id`; `force` is its 3 components. Returns the force's id, or -1 if the point is out of
+/// range or the force is not finite.
 ///
 /// # Safety
 /// `force` is null or readable for 3 doubles.

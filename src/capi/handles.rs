@@ -1,10 +1,10 @@
 //! Handles: small integers that name a solver, or are recognised as naming none.
 //!
-//! A handle is `generation << 16 | index`: nonzero, below 2^31, so it survives a caller that cuts it to a C `int`. It is
-//! read back from the low 32 bits alone, because the upper half of a register that was loaded as an `int` is not defined.
-//! The generation of a place is raised whenever its solver is deleted; when its generations are used up, the place is
-//! never used again. So no handle is ever given out twice, and a deleted one is recognised for good. Free places wait in
-//! a queue, which spreads the generations.
+//! A handle is `generation << 16 | index`: nonzero, below 2^31, so it survives a caller that cuts it to a C `int`. It
+//! is read back from the low 32 bits alone, because the upper half of a register that was loaded as an `int` is not
+//! defined. The generation of a place is raised whenever its solver is deleted; when its generations are used up, the
+//! place is never used again. So no handle is ever given out twice, and a deleted one is recognised for good. Free
+//! places wait in a queue, which spreads the generations.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};

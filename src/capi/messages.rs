@@ -1,8 +1,8 @@
 //! What the last call said, for `shapeop_lastError`.
 //!
-//! Every call leaves its message, an empty one if it succeeded, with its thread, and with its solver if it got hold of it.
-//! So a caller of a function without a return value learns from an empty text that it was carried out; a thread reads what
-//! another thread's call on a solver left; and a refusal as busy stays with the thread that was refused.
+//! Every call leaves its message, an empty one if it succeeded, with its thread, and with its solver if it got hold of
+//! it. So a caller of a function without a return value learns from an empty text that it was carried out; a thread
+//! reads what another thread's call on a solver left; and a refusal as busy stays with the thread that was refused.
 
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
@@ -55,8 +55,8 @@ pub(super) fn keep_note(handle: Handle, note: &Error) {
     keep_for_thread(handle, Some(note));
 }
 
-/// Why the last call on `handle` was refused; this thread's last call if `handle` names no solver. Another thread's success
-/// does not hide a refusal of this one.
+/// Why the last call on `handle` was refused; this thread's last call if `handle` names no solver. Another thread's
+/// success does not hide a refusal of this one.
 fn last(handle: Handle) -> String {
     let of_thread = LAST.try_with(|last| last.borrow().clone());
     let (own_handle, of_thread) = of_thread.unwrap_or((Handle::NONE, Message::default()));

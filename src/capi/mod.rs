@@ -1,15 +1,15 @@
 //! The C ABI: `include/shapeop.h` is generated from the doc comments here (`cargo xtask header`).
 //!
 //! What the boundary promises:
-//! - No argument crashes it that C lets it check: handles of any value, null pointers, negative counts, numbers that are not
-//!   finite, ids and indices out of range. What it cannot check, each function lists under *Safety*.
+//! - No argument crashes it that C lets it check: handles of any value, null pointers, negative counts, numbers that
+//!   are not finite, ids and indices out of range. What it cannot check, each function lists under *Safety*.
 //! - A refused call changes nothing, writes no output, and leaves a message for `shapeop_lastError`.
-//! - A panic never crosses it: it becomes [`Status::Internal`], and the solver that it happened in is refused from then on,
-//!   as nobody knows what state it is in. It can still be deleted.
+//! - A panic never crosses it: it becomes [`Status::Internal`], and the solver that it happened in is refused from then
+//!   on, as nobody knows what state it is in. It can still be deleted.
 //! - No call waits for another. A solver that is in use by another call is *busy*: see [`guard`].
 //!
-//! Every function calls [`guard`], [`guard_read`] or [`guard_free`] in its body, and holds no logic beyond turning pointers
-//! into what the Rust API takes. This is the only room with unsafe code.
+//! Every function calls [`guard`], [`guard_read`] or [`guard_free`] in its body, and holds no logic beyond turning
+//! pointers into what the Rust API takes. This is the only room with unsafe code.
 
 #![allow(non_snake_case, non_camel_case_types, reason = "the names of libShapeOp's ABI")]
 
@@ -46,8 +46,9 @@ use handles::{Handle, State};
 /// A call that was refused has left its message; this is the rest.
 type Refused<T> = std::result::Result<T, Status>;
 
-/// Runs `call` on the solver that `op` names. Refuses a bad handle; refuses, without waiting, a solver that another call
-/// is using, which includes every call from inside its own progress callback. Catches panics and keeps the message.
+/// Runs `call` on the solver that `op` names. Refuses a bad handle; refuses, without waiting, a solver that another
+/// call is using, which includes every call from inside its own progress callback. Catches panics and keeps the
+/// message.
 fn guard<T>(op: *mut ShapeOpSolver, call: impl FnOnce(&mut Solver) -> Result<T>) -> Refused<T> {
     let handle = Handle::new(op);
     guard_named(handle, || {
@@ -59,7 +60,8 @@ fn guard<T>(op: *mut ShapeOpSolver, call: impl FnOnce(&mut Solver) -> Result<T>)
     })
 }
 
-/// As [`guard`], for a call that only reads: from inside the solver's own progress callback it sees the current iterate.
+/// As [`guard`], for a call that only reads: from inside the solver's own progress callback it sees the current
+/// iterate.
 fn guard_read<T>(op: *mut ShapeOpSolver, call: impl FnOnce(&Solver) -> Result<T>) -> Refused<T> {
     let handle = Handle::new(op);
     match current::solver(handle) {

@@ -9,9 +9,9 @@ use super::handles::ShapeOpSolver;
 use super::{c_count, guard, guard_read, number};
 use crate::error::{Error, Result, Status};
 
-/// Replaces the positions: `points` holds `x0 y0 z0 x1 ...` in model units. Rest states, targets and velocities stay. Their
-/// number may change as long as no constraint or force refers beyond it; added points start at rest. Refused, with nothing
-/// changed, if it may not, or if a coordinate is not finite.
+/// Replaces the positions: `points` holds `x0 y0 z0 x1 ...` in model units. Rest states, targets and velocities stay.
+/// Their number may change as long as no constraint or force refers beyond it; added points start at rest. Refused,
+/// with nothing changed, if it may not, or if a coordinate is not finite.
 ///
 /// # Safety
 /// `points` is null or readable for `3 * nb_points` doubles.
@@ -25,8 +25,8 @@ pub unsafe extern "C" fn shapeop_setPoints(op: *mut ShapeOpSolver, points: *mut 
     });
 }
 
-/// Copies the positions to `points` as `x0 y0 z0 x1 ...` in model units. `nb_points` must be the solver's number of points;
-/// otherwise nothing is written. From inside the progress callback: the current iterate.
+/// Copies the positions to `points` as `x0 y0 z0 x1 ...` in model units. `nb_points` must be the solver's number of
+/// points; otherwise nothing is written. From inside the progress callback: the current iterate.
 ///
 /// # Safety
 /// `points` is null or writable for `3 * nb_points` doubles.

@@ -32,8 +32,8 @@ pub struct shapeop_constraint_type {
     pub least_indices: c_int,
     /// The greatest number of point indices; -1: any number.
     pub greatest_indices: c_int,
-    /// The number of scalars of an edit; 0: it cannot be edited; -1: shapes, any positive multiple of 3 times the number
-    /// of indices (x y z of each point of each shape).
+    /// The number of scalars of an edit; 0: it cannot be edited; -1: shapes, any positive multiple of 3 times the
+    /// number of indices (x y z of each point of each shape).
     pub scalar_count: c_int,
     /// The number of names for indices; the last name stands for all indices that follow.
     pub index_name_count: c_int,
@@ -105,8 +105,8 @@ pub unsafe extern "C" fn shapeop_constraintType(index: c_int, out: *mut shapeop_
     }))
 }
 
-/// Describes the scalar `scalar_index` of the constraint type `index` in `out`, whose `struct_size` must be set. Types that
-/// take shapes have no scalars to describe.
+/// Describes the scalar `scalar_index` of the constraint type `index` in `out`, whose `struct_size` must be set. Types
+/// that take shapes have no scalars to describe.
 ///
 /// # Safety
 /// `out` is null, or its `struct_size` is set and it is writable for so many bytes.
@@ -134,8 +134,8 @@ pub unsafe extern "C" fn shapeop_constraintScalar(
     }))
 }
 
-/// What the point index `index_position` of a constraint of the type `index` means, such as "apex"; null if there is no such
-/// type or its `index_name_count` is not above `index_position`. Valid as long as the library is loaded.
+/// What the point index `index_position` of a constraint of the type `index` means, such as "apex"; null if there is no
+/// such type or its `index_name_count` is not above `index_position`. Valid as long as the library is loaded.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_constraintIndexName(index: c_int, index_position: c_int) -> *const c_char {
     let name = guard_free(|| {

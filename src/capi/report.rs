@@ -41,7 +41,8 @@ pub enum shapeop_outcome {
     SO_OUTCOME_CANCELLED = 3,
     /// Neither the energy nor the largest move fell any more.
     SO_OUTCOME_STALLED = 4,
-    /// A force acts along a motion that no constraint resists, and the points did not move. `shapeop_lastError` says which.
+    /// A force acts along a motion that no constraint resists, and the points did not move. `shapeop_lastError` says
+    /// which.
     SO_OUTCOME_UNBOUNDED = 5,
 }
 
@@ -87,8 +88,8 @@ pub struct shapeop_progress {
     pub largest_move: f64,
 }
 
-/// Called after every iteration, on the thread that called `shapeop_solveUntil`. Returns 0 to go on; anything else ends the
-/// solve, and what was reached is kept. It must return: no exception, no `longjmp`.
+/// Called after every iteration, on the thread that called `shapeop_solveUntil`. Returns 0 to go on; anything else ends
+/// the solve, and what was reached is kept. It must return: no exception, no `longjmp`.
 pub type shapeop_progress_callback =
     Option<unsafe extern "C" fn(progress: *const shapeop_progress, user: *mut c_void) -> c_int>;
 
@@ -128,9 +129,10 @@ pub unsafe extern "C" fn shapeop_defaultSolveOptions(options: *mut shapeop_solve
     }))
 }
 
-/// Iterates until `options` (null: the defaults) say to stop; in dynamic mode within one time step. `progress` may be null;
-/// it is called with `user` after every iteration. While it runs, reading calls on `op` from it answer with the current
-/// iterate, and all other calls are refused as busy. `report` is null, or its `struct_size` is set; it is written on success.
+/// Iterates until `options` (null: the defaults) say to stop; in dynamic mode within one time step. `progress` may be
+/// null; it is called with `user` after every iteration. While it runs, reading calls on `op` from it answer with the
+/// current iterate, and all other calls are refused as busy. `report` is null, or its `struct_size` is set; it is
+/// written on success.
 ///
 /// A force along a motion that no constraint resists is the outcome `SO_OUTCOME_UNBOUNDED` of a successful call.
 ///
@@ -192,8 +194,8 @@ pub unsafe extern "C" fn shapeop_solveUntil(
     result
 }
 
-/// Writes the energy at the current points to `out`: half the sum of the weighted squared distances to the projections, in
-/// static mode minus the potential of the forces, in dynamic mode plus the inertia of the last step.
+/// Writes the energy at the current points to `out`: half the sum of the weighted squared distances to the projections,
+/// in static mode minus the potential of the forces, in dynamic mode plus the inertia of the last step.
 ///
 /// # Safety
 /// `out` is null or writable for one double.
@@ -208,8 +210,8 @@ pub unsafe extern "C" fn shapeop_energy(op: *mut ShapeOpSolver, out: *mut f64) -
     }))
 }
 
-/// Writes the violation of every constraint id at the current points to `out`, each in its type's unit; 0 for removed ones.
-/// `nb` must be `shapeop_constraintCount`; otherwise nothing is written.
+/// Writes the violation of every constraint id at the current points to `out`, each in its type's unit; 0 for removed
+/// ones. `nb` must be `shapeop_constraintCount`; otherwise nothing is written.
 ///
 /// # Safety
 /// `out` is null or writable for `nb` doubles.

@@ -24,24 +24,25 @@ pub extern "C" fn shapeop_delete(op: *mut ShapeOpSolver) {
     }
 }
 
-/// Prepares for static solving from the current points: masses, damping and time step are 1, velocities start at zero. May
-/// be called again at any time. Returns 0, or 1 if the system cannot be factorised (numbers too large).
+/// Prepares for static solving from the current points: masses, damping and time step are 1, velocities start at zero.
+/// May be called again at any time. Returns 0, or 1 if the system cannot be factorised (numbers too large).
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_init(op: *mut ShapeOpSolver) -> c_int {
     flag(guard(op, |solver| solver.init()))
 }
 
 /// Prepares for dynamic solving from the current points with zero velocities. `masses` is that of every point, above 0;
-/// `damping` the factor on velocities after each step, at least 0; `timestep` is above 0. Returns 0, or 1 if one of them is
-/// not so or the system cannot be factorised; the solver is then as before.
+/// `damping` the factor on velocities after each step, at least 0; `timestep` is above 0. Returns 0, or 1 if one of
+/// them is not so or the system cannot be factorised; the solver is then as before.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_initDynamic(op: *mut ShapeOpSolver, masses: f64, damping: f64, timestep: f64) -> c_int {
     flag(guard(op, |solver| solver.init_dynamic(masses, damping, timestep)))
 }
 
 /// Static: so many local/global iterations from the current points. Dynamic: one time step with so many iterations.
-/// Changes since the last call, of constraints too, take effect. Returns 0, or 1 with the points as before if the solver
-/// was not initialised, if a force acts along a motion that no constraint resists, or if the numbers became too large.
+/// Changes since the last call, of constraints too, take effect. Returns 0, or 1 with the points as before if the
+/// solver was not initialised, if a force acts along a motion that no constraint resists, or if the numbers became too
+/// large.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_solve(op: *mut ShapeOpSolver, iteration: c_uint) -> c_int {
     flag(guard(op, |solver| solver.solve(iteration)))
@@ -54,8 +55,8 @@ pub extern "C" fn shapeop_setTimeStep(op: *mut ShapeOpSolver, timestep: f64) {
     let _ = guard(op, |solver| solver.set_timestep(timestep));
 }
 
-/// Changes the damping of the following steps. Before initialisation it has no effect. A damping that is not finite and at
-/// least 0 changes nothing.
+/// Changes the damping of the following steps. Before initialisation it has no effect. A damping that is not finite and
+/// at least 0 changes nothing.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_setDamping(op: *mut ShapeOpSolver, damping: f64) {
     let _ = guard(op, |solver| solver.set_damping(damping));

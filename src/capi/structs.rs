@@ -1,8 +1,9 @@
 //! Structs that begin with their size, so that they can grow at the end without breaking callers.
 //!
-//! `struct_size` is `sizeof` the struct as the caller was compiled. A caller that is older than this library has a shorter
-//! one: the fields that it does not have mean their defaults and are not written. A newer one has a longer one: what lies
-//! beyond the fields known here must be zero where the caller asks for something, and is left as it is where it is told.
+//! `struct_size` is `sizeof` the struct as the caller was compiled. A caller that is older than this library has a
+//! shorter one: the fields that it does not have mean their defaults and are not written. A newer one has a longer one:
+//! what lies beyond the fields known here must be zero where the caller asks for something, and is left as it is where
+//! it is told.
 
 use std::ffi::c_uint;
 use std::{ptr, slice};
@@ -18,8 +19,8 @@ const LARGEST_STRUCT: usize = 4096;
 /// # Safety
 /// It is `repr(C)` and its first field is `struct_size: c_uint`.
 pub(super) unsafe trait SizedStruct: Copy {
-    /// The sizes of the versions of this struct that a caller may have, ascending; each ends where a field begins or where
-    /// the struct ends.
+    /// The sizes of the versions of this struct that a caller may have, ascending; each ends where a field begins or
+    /// where the struct ends.
     const SIZES: &'static [usize];
 }
 
@@ -65,7 +66,8 @@ pub(super) unsafe fn read<T: SizedStruct>(name: &str, data: *const T, defaults: 
 pub(super) unsafe fn write<T: SizedStruct>(out: *mut T, size: usize, value: &T) {
     let first = size_of::<c_uint>();
     let length = size.min(size_of::<T>()) - first;
-    // SAFETY: every size in `SIZES` is beyond `struct_size`; the caller vouches for `out`, and `value` is our own memory.
+    // SAFETY: every size in `SIZES` is beyond `struct_size`; the caller vouches for `out`, and `value` is our own
+    // memory.
     unsafe {
         let from = ptr::from_ref(value).cast::<u8>().add(first);
         ptr::copy_nonoverlapping(from, out.cast::<u8>().add(first), length);

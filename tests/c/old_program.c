@@ -15,7 +15,9 @@ static void check(int is_true, const char *what) {
     }
 }
 
-static int near_to(ShapeOpScalar a, ShapeOpScalar b, ShapeOpScalar tolerance) { return fabs(a - b) <= tolerance; }
+static int near_to(ShapeOpScalar a, ShapeOpScalar b, ShapeOpScalar tolerance) {
+    return fabs(a - b) <= tolerance;
+}
 
 /* A square whose corners are h above and below its plane in turn. With a plane of weight 1 and a closeness of weight w per
  * corner, each height is h w / (w + 1) after one iteration: the best-fit plane is z = 0 all along. */
@@ -35,7 +37,7 @@ static void planarise(void) {
     check(plane == 0 && closeness[0] == 1 && closeness[3] == 4, "ids count up from 0");
     check(shapeop_editConstraint(solver, "Closeness", closeness[0], target, 3) == SO_SUCCESS, "edit");
     check(shapeop_editConstraint(solver, "Closeness", closeness[0], start, 3) == SO_SUCCESS, "edit back");
-    check(shapeop_editConstraint(solver, "Plane", plane, start, 3) == SO_INVALID_CONSTRAINT_TYPE, "a plane has no scalars");
+    check(shapeop_editConstraint(solver, "Plane", plane, start, 3) == SO_INVALID_CONSTRAINT_TYPE, "no scalars");
     check(shapeop_editConstraint(solver, "Closeness", plane, start, 3) == SO_UNMATCHING_CONSTRAINT_ID, "a plane's id");
     check(shapeop_editConstraint(solver, "Closeness", closeness[1], start, 2) == SO_INVALID_ARGUMENT_LENGTH, "2 of 3");
     check(shapeop_addConstraint(solver, "NoSuchType", corners, 4, 1.0) == -1, "no such type");
@@ -50,8 +52,8 @@ static void planarise(void) {
     shapeop_delete(solver);
 }
 
-/* A spring between a held point and a mass under gravity g: it comes to rest where its weight w (strain per length) balances
- * the force: in static mode w (x − 1) = g with L = 1. The held point is as good as fixed. */
+/* A spring of rest length 1 and weight w between a held point and one that a force f pulls: at rest w (x - 1) = f, x its
+ * length. The held point is as good as fixed. */
 static void hang(void) {
     ShapeOpScalar points[6] = {0, 0, 0, 0, 0, -1};
     ShapeOpScalar gravity[3] = {0, 0, -0.5};

@@ -52,7 +52,8 @@ void polygon(int n) {
     shapeop_getPoints(solver.get(), points.data(), n);
     const double radius = 1 / (2 * std::sin(std::acos(-1.0) / n));
     for (int i = 0; i < n; ++i) {
-        check(std::abs(std::hypot(points[3 * i], points[3 * i + 1]) - radius) < 1e-6, "circumradius of " + std::to_string(n));
+        const double found = std::hypot(points[3 * i], points[3 * i + 1]);
+        check(std::abs(found - radius) < 1e-6, "circumradius of " + std::to_string(n));
     }
     std::vector<double> violations(n);
     check(shapeop_getViolations(solver.get(), violations.data(), n) == SO_SUCCESS, "violations");

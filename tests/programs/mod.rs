@@ -33,7 +33,8 @@ impl Language {
     }
 }
 
-/// Says loudly that a part of a test is left out, here and in the file that `cargo xtask test` reads; with CI=true, fails.
+/// Says loudly that a part of a test is left out, here and in the file that `cargo xtask test` reads; with CI=true,
+/// fails.
 pub fn leave_out(what: &str) {
     assert!(std::env::var("CI").as_deref() != Ok("true"), "CI leaves nothing out, but: {what}");
     println!("LEFT OUT: {what}");
@@ -103,8 +104,8 @@ fn has_sanitizer(language: Language, compiler: &str) -> bool {
         && Command::new(&program).output().is_ok_and(|output| output.status.success())
 }
 
-/// Builds `source` (in `tests/`) against the library `name` in `folder` of the distribution, and runs it. An old program,
-/// in `compat`, sees only that folder.
+/// Builds `source` (in `tests/`) against the library `name` in `folder` of the distribution, and runs it. An old
+/// program, in `compat`, sees only that folder.
 pub fn build_and_run(language: Language, source: &str, folder: &str, name: &str) -> Option<Output> {
     let compiler = compiler(language)?;
     let libraries = dist().join(folder);

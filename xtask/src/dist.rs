@@ -20,8 +20,8 @@ const LIBRARY: &str = "libshapeop.so";
 const IMPORT_LIBRARY: &str = "shapeop.dll.lib";
 
 /// The names under which old hosts look for the library. They lie in a folder of their own, because `libshapeop` and
-/// `libShapeOp` are one name on Windows and macOS. The library has no SONAME, so a program that is linked with one of these
-/// files asks for it by its own name.
+/// `libShapeOp` are one name on Windows and macOS. The library has no SONAME, so a program that is linked with one of
+/// these files asks for it by its own name.
 #[cfg(target_os = "macos")]
 const COMPAT_NAMES: [&str; 3] = ["libShapeOp.so", "ShapeOp.0.1.0.dll", "libShapeOp.dylib"];
 #[cfg(not(target_os = "macos"))]
