@@ -8,6 +8,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
+use std::time::Duration;
+
+/// The age of a folder that no running test uses.
+const EARLIER: Duration = Duration::from_secs(3600);
 
 /// A language of the system compiler.
 #[derive(Clone, Copy, Debug)]
@@ -66,9 +70,18 @@ pub fn compiler(language: Language) -> Option<String> {
     found
 }
 
-/// An empty folder for the files of a test of this process.
+/// An empty folder for the files of a test of this process. Those of earlier runs are removed: after an hour, none runs.
 pub fn scratch(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{}", std::process::id()));
+    let all = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let is_old = |entry: &fs::DirEntry| {
+        let age = entry.metadata().and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
+        entry.file_name().to_string_lossy().starts_with(&format!("{name}-")) && age.is_some_and(|age| age > EARLIER)
+    };
+    for entry in fs::read_dir(all).into_iter().flatten().flatten().filter(is_old) {
+        // Another process may be removing it, too.
+        let _ = fs::remove_dir_all(entry.path());
+    }
+    let folder = all.join(format!("{name}-{}", std::process::id()));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
     folder
