@@ -64,6 +64,7 @@
 pub mod constraints;
 pub mod error;
 pub mod linalg;
+pub mod mesh;
 pub mod problem;
 pub mod solver;
 
