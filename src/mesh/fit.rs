@@ -12,12 +12,12 @@ const MIN_SPREAD: f64 = 1e-10;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// The mean of the points, which is on it.
-    pub centre: DVec3,
+    pub center: DVec3,
     /// A unit vector.
     pub normal: DVec3,
     /// Unit vectors in the plane, the direction of largest spread second.
     axes: [DVec3; 2],
-    /// The largest coordinate of a point relative to `centre`; 1 if all coincide.
+    /// The largest coordinate of a point relative to `center`; 1 if all coincide.
     scale: f64,
     /// The sums of squares along `axes`, in units of `scale²`.
     spreads: [f64; 2],
@@ -27,26 +27,26 @@ impl Plane {
     /// The plane of the least sum of squared distances from `points`; any plane through them where they do not span one,
     /// through the origin where there are none.
     pub fn fitting(points: &[DVec3]) -> Self {
-        let centre = mean(points);
-        let offsets = points.iter().map(|&point| point - centre);
+        let center = mean(points);
+        let offsets = points.iter().map(|&point| point - center);
         let largest = offsets.clone().map(|offset| offset.abs().max_element()).fold(0.0, f64::max);
         // Squares of huge coordinates would overflow, of tiny ones vanish.
         let scale = if largest > 0.0 { largest } else { 1.0 };
         let (values, [normal, minor, major]) = symmetric_eigen(scatter(offsets.map(|offset| offset / scale)));
-        Self { centre, normal, axes: [minor, major], scale, spreads: [values[1], values[2]] }
+        Self { center, normal, axes: [minor, major], scale, spreads: [values[1], values[2]] }
     }
 
     /// The distance of `point` from the plane, above 0 on the side that the normal points to.
     pub fn height(&self, point: DVec3) -> f64 {
-        (point - self.centre).dot(self.normal)
+        (point - self.center).dot(self.normal)
     }
 }
 
 /// A circle in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
-    /// Its centre.
-    pub centre: DVec3,
+    /// Its center.
+    pub center: DVec3,
     /// A unit vector along its axis.
     pub normal: DVec3,
     /// Its radius.
@@ -66,7 +66,7 @@ impl Circle {
             return None;
         }
         let (mut cubes, mut squares) = ([0.0; 2], 0.0);
-        for offset in points.iter().map(|&point| (point - plane.centre) / plane.scale) {
+        for offset in points.iter().map(|&point| (point - plane.center) / plane.scale) {
             let (u, v) = (offset.dot(minor), offset.dot(major));
             let square = u * u + v * v;
             cubes = [cubes[0] + u * square, cubes[1] + v * square];
@@ -74,13 +74,13 @@ impl Circle {
         }
         let [u, v] = [0, 1].map(|i| 0.5 * cubes[i] / plane.spreads[i]);
         let radius = plane.scale * (u * u + v * v + squares / points.len() as f64).sqrt();
-        let centre = plane.centre + plane.scale * (u * minor + v * major);
-        (centre.is_finite() && radius.is_finite()).then_some(Self { centre, normal: plane.normal, radius })
+        let center = plane.center + plane.scale * (u * minor + v * major);
+        (center.is_finite() && radius.is_finite()).then_some(Self { center, normal: plane.normal, radius })
     }
 
     /// The distance of `point` from the circle's line.
     pub fn distance(&self, point: DVec3) -> f64 {
-        let offset = point - self.centre;
+        let offset = point - self.center;
         let height = offset.dot(self.normal);
         ((offset - height * self.normal).length() - self.radius).hypot(height)
     }
@@ -98,16 +98,16 @@ pub fn regular_polygon(count: usize) -> Vec<DVec3> {
 /// The turns of a regular polygon into itself are rotations in space, its reflections too; so no start and no sense of
 /// the order is better than another.
 pub fn fitting_regular_polygon(corners: &[DVec3]) -> Vec<DVec3> {
-    let centre = mean(corners);
+    let center = mean(corners);
     let shape = regular_polygon(corners.len());
     let products = corners.iter().zip(&shape).map(|(&corner, &at)| {
-        let offset = corner - centre;
+        let offset = corner - center;
         DMat3::from_cols(offset * at.x, offset * at.y, offset * at.z)
     });
     let (rotation, trace) = nearest_rotation(products.fold(DMat3::ZERO, |sum, product| sum + product));
     // The shape's sum of squares is the number of its corners. A shrunken trace means a collapsed polygon, not a mirror.
     let scale = (trace / corners.len().max(1) as f64).max(0.0);
-    shape.iter().map(|&at| centre + scale * (rotation * at)).collect()
+    shape.iter().map(|&at| center + scale * (rotation * at)).collect()
 }
 
 fn mean(points: &[DVec3]) -> DVec3 {
@@ -143,7 +143,7 @@ mod tests {
         let points = turned(&[0.0, 0.1, 0.15, 0.3].map(at));
         let circle = Circle::fitting(&points).unwrap();
         assert!((circle.radius - 3.0).abs() < 1e-12);
-        assert!(circle.centre.distance(DVec3::new(10.0, -3.0, 7.0)) < 1e-12);
+        assert!(circle.center.distance(DVec3::new(10.0, -3.0, 7.0)) < 1e-12);
         // One unit above the plane and one outside the circle.
         let beside = turned(&[DVec3::new(4.0, 0.0, 1.0)])[0];
         assert!((circle.distance(beside) - 2.0_f64.sqrt()).abs() < 1e-12);

@@ -5,6 +5,7 @@
 //! `constraints[17].indices[2]: 5000 is out of range for 4096 points`.
 
 mod forces;
+pub mod recipes;
 
 pub use forces::{Force, ForceId, ForceSet};
 
