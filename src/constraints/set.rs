@@ -185,6 +185,21 @@ impl ConstraintSet {
     /// (`UnmatchingConstraintId`), the number of scalars does not fit (`InvalidArgumentLength`), a scalar is outside its
     /// domain (`InvalidValue`). Nothing changes then.
     pub fn edit(&mut self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<Edited> {
+        self.check_edit(type_name, id, scalars)?;
+        let place = self.place(id)?;
+        let slot = place.slot as usize;
+        let group = &mut self.groups[place.type_index.0 as usize];
+        if group.batch.scalars(slot) == scalars {
+            return Ok(Edited::Nothing);
+        }
+        Ok(if group.batch.set_scalars(slot, scalars) { Edited::Rows } else { Edited::Targets })
+    }
+
+    /// Refuses what [`ConstraintSet::edit`] would refuse.
+    ///
+    /// # Errors
+    /// As [`ConstraintSet::edit`].
+    pub fn check_edit(&self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<()> {
         let named = TypeIndex::named(type_name)?;
         if named.info().scalars == super::Scalars::None {
             named.info().check_scalar_count(1, 0)?;
@@ -195,13 +210,8 @@ impl ConstraintSet {
             let reason = format!("constraint {id} is of type \"{}\", not \"{type_name}\"", info.name);
             return Err(Error::new(Status::UnmatchingConstraintId, reason).at("constraint id"));
         }
-        let slot = place.slot as usize;
-        let group = &mut self.groups[place.type_index.0 as usize];
-        check_scalars(place.type_index, group.batch.indices(slot).len(), scalars)?;
-        if group.batch.scalars(slot) == scalars {
-            return Ok(Edited::Nothing);
-        }
-        Ok(if group.batch.set_scalars(slot, scalars) { Edited::Rows } else { Edited::Targets })
+        let group = &self.groups[place.type_index.0 as usize];
+        check_scalars(place.type_index, group.batch.indices(place.slot as usize).len(), scalars)
     }
 
     /// Sets the weight of a constraint; returns true if it is another one than before.
