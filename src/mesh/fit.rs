@@ -62,7 +62,8 @@ impl Circle {
     pub fn fitting(points: &[DVec3]) -> Option<Self> {
         let plane = Plane::fitting(points);
         let [minor, major] = plane.axes;
-        if !(plane.spreads[0] > MIN_SPREAD * plane.spreads[1]) {
+        let spans_a_plane = plane.spreads[0] > MIN_SPREAD * plane.spreads[1];
+        if !spans_a_plane {
             return None;
         }
         let (mut cubes, mut squares) = ([0.0; 2], 0.0);

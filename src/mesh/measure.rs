@@ -3,6 +3,7 @@
 //! Ratios are plain numbers: 0.01 is one percent. Where a face has no size to compare with, its ratio is 0.
 
 use glam::DVec3;
+use serde::Serialize;
 
 use super::fit::{Circle, Plane, fitting_regular_polygon};
 use super::{Mesh, Topology};
@@ -13,7 +14,7 @@ use crate::error::{Error, Result, Status};
 const MIN_SINE: f64 = 1e-9;
 
 /// The extremes and the mean of a list of values.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
     /// The number of values.
     pub count: usize,

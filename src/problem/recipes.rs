@@ -24,6 +24,10 @@ const ANCHOR_FACTOR: f64 = 1e4;
 /// patch of quads turn by about 90 degrees, the teeth of a boundary of hexagons by 60.
 const CORNER_TURN_RAD: f64 = 75.0 * std::f64::consts::PI / 180.0;
 
+/// Iterations at most unless the caller says otherwise: enough for the meshes in `examples/` to come to rest, or within
+/// sight of it where little holds them.
+const MAX_ITERATIONS: u32 = 2000;
+
 /// Which points keep their place.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Anchors {
@@ -131,7 +135,8 @@ pub fn equalize(mesh: &Mesh, length: Option<f64>, options: &RecipeOptions) -> Re
     let mut recipe = Recipe::new(mesh, options)?;
     let rest_lengths = edge_lengths(mesh)?;
     let length = length.unwrap_or_else(|| Spread::of(&rest_lengths).mean);
-    if !(length > 0.0 && length.is_finite()) && !rest_lengths.is_empty() {
+    let is_length = length > 0.0 && length.is_finite();
+    if !is_length && !rest_lengths.is_empty() {
         let reason = format!("expected a finite number above 0, found {length}");
         return Err(Error::new(Status::InvalidValue, reason).at("length"));
     }
@@ -211,7 +216,7 @@ impl<'a> Recipe<'a> {
         let problem = Problem {
             points: mesh.points.iter().map(DVec3::to_array).collect(),
             faces: mesh.faces.clone(),
-            settings: Settings::default(),
+            settings: Settings { max_iterations: MAX_ITERATIONS, ..Settings::default() },
             ..Problem::default()
         };
         Ok(Self { mesh, options, topology: Topology::new(mesh)?, problem })
