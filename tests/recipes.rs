@@ -84,6 +84,10 @@ fn what_errs_is_refused_with_its_place() {
     let bad_face = |face: &[u32]| Mesh { faces: vec![vec![0, 1, 4, 3], face.to_vec()], ..tent() };
     assert_eq!(refusal(&bad_face(&[0, 1, 2, 9]), &default), "faces[1][3]: 9 is out of range for 9 points");
     assert_eq!(refusal(&bad_face(&[0, 1, 4, 1]), &default), "faces[1][3]: point 1 is already corner 1 of this face");
+    assert_eq!(
+        refusal(&Mesh { faces: Vec::new(), ..tent() }, &default),
+        "faces: expected at least one face, found none"
+    );
     let with = |change: fn(&mut RecipeOptions)| {
         let mut options = RecipeOptions::default();
         change(&mut options);

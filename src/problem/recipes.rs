@@ -81,7 +81,7 @@ impl Default for RecipeOptions {
 /// Makes every face planar: a `Plane` per face. Triangles are planar as they are and get none.
 ///
 /// # Errors
-/// As [`Mesh::check_polygons`]; a weight is negative or not finite; an anchor is out of range.
+/// As [`Mesh::check_polygons`]; the mesh has no faces; a weight is negative or not finite; an anchor is out of range.
 pub fn planarize(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
     let mut recipe = Recipe::new(mesh, options)?;
     for face in mesh.faces.iter().filter(|face| face.len() > 3) {
@@ -136,7 +136,7 @@ pub fn equalize(mesh: &Mesh, length: Option<f64>, options: &RecipeOptions) -> Re
     let rest_lengths = edge_lengths(mesh)?;
     let length = length.unwrap_or_else(|| Spread::of(&rest_lengths).mean);
     let is_length = length > 0.0 && length.is_finite();
-    if !is_length && !rest_lengths.is_empty() {
+    if !is_length {
         let reason = format!("expected a finite number above 0, found {length}");
         return Err(Error::new(Status::InvalidValue, reason).at("length"));
     }
@@ -206,6 +206,9 @@ struct Recipe<'a> {
 impl<'a> Recipe<'a> {
     fn new(mesh: &'a Mesh, options: &'a RecipeOptions) -> Result<Self> {
         mesh.check_polygons()?;
+        if mesh.faces.is_empty() {
+            return Err(Error::new(Status::InvalidValue, "expected at least one face, found none").at("faces"));
+        }
         let weights = [("weight", options.weight), ("closeness", options.closeness), ("fairness", options.fairness)];
         for (name, weight) in weights {
             if finite(name, weight)? < 0.0 {
