@@ -1,5 +1,6 @@
 //! The files of a run: all written whole, under names that tell what they are.
 
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
@@ -67,5 +68,14 @@ impl Output {
         let lines: Vec<String> =
             self.written.iter().map(|(what, path)| format!("  {what:<12} {}", path.display())).collect();
         lines.join("\n")
+    }
+}
+
+/// Prints to standard output. A reader that has seen enough, such as `head`, is no failure.
+pub fn say(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("standard output cannot be written"),
+        _ => Ok(()),
     }
 }

@@ -100,12 +100,14 @@ fn planarity(mesh: &Mesh) -> Spread {
     Spread::of(&measure::of_faces(mesh, measure::planarity).unwrap())
 }
 
+type Measure = fn(&[DVec3]) -> f64;
+
 /// Every figure of the report that can be taken from the files is taken from them.
 #[track_caller]
 fn assert_report_is_true(report: &Value, before: &Mesh, after: &Mesh) {
     for (when, mesh) in [("before", before), ("after", after)] {
         let quality = &report["quality"][when];
-        let measures: [(&str, fn(&[DVec3]) -> f64); 4] = [
+        let measures: [(&str, Measure); 4] = [
             ("planarity", measure::planarity),
             ("plane_distance", measure::plane_distance),
             ("circularity", measure::circularity),
@@ -328,6 +330,7 @@ fn what_is_wrong_is_named_with_its_place() {
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
     let bent = folder.write("bent.obj", "v 0 0 0\nv 1 0 zero\n");
     let twice = folder.write("twice.obj", &format!("{square}f 1 2 3 4\nf 1 2 3 2\n"));
+    let points = folder.write("points.obj", square);
     let good = folder.write("good.obj", &format!("{square}f 1 2 3 4\n"));
     let problem = folder.write(
         "bad.json",
@@ -338,12 +341,13 @@ fn what_is_wrong_is_named_with_its_place() {
         r#"{"version": 1, "points": [[0,0,0]], "forces": [{"kind": "gravity", "force": [0,0,-1]}]}"#,
     );
     let taken = folder.write("taken", "");
-    let cases: [(&[&str], &str); 11] = [
+    let cases: [(&[&str], &str); 12] = [
         (&["planarize", &bent], "bent.obj:2: expected a finite number, found \"zero\""),
         (&["check", &bent], "bent.obj:2: expected a finite number, found \"zero\""),
         (&["planarize", &twice], "twice.obj, line 6: faces[1][3]: point 1 is already corner 1 of this face"),
         (&["planarize", "none.obj"], "none.obj: cannot be read: "),
         (&["planarize", "model.3dm"], "model.3dm: expected the extension .obj, .off or .ply"),
+        (&["planarize", &points], "points.obj: faces: expected at least one face, found none"),
         (&["planarize", &good, "--closeness", "-1"], "closeness: expected at least 0, found -1"),
         (&["planarize", &good, "--tolerance", "-1"], "tolerance: expected a finite number of at least 0, found -1"),
         (&["planarize", &good, "--anchors", "7"], "anchors[0]: 7 is out of range for 4 points"),
@@ -369,6 +373,20 @@ fn what_is_wrong_is_named_with_its_place() {
     );
     assert!(refused(&shapeop(&["check", &good, "--limit", "nan"]), 2).contains("expected a number above 0"));
     refused(&shapeop(&["planarise", &good]), 2);
+}
+
+/// `shapeop types | head -1`: the pipe closes before everything is said.
+#[test]
+fn a_reader_that_has_seen_enough_is_no_failure() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_shapeop"))
+        .args(["types", "--json"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 #[cfg(unix)]

@@ -7,6 +7,7 @@ use shapeop::mesh::measure::{self, Spread};
 
 use crate::Ending;
 use crate::args::CheckArgs;
+use crate::output::say;
 use crate::quality::{Connections, Quality};
 use crate::table::{aligned, histogram, number, percent};
 
@@ -19,9 +20,9 @@ pub fn run(args: &CheckArgs, is_quiet: bool) -> Result<Ending> {
         return Ok(Ending::Done);
     }
     if args.json {
-        println!("{}", as_json(args, &source, &connections, &quality)?);
+        say(&as_json(args, &source, &connections, &quality)?)?;
     } else {
-        println!("{}", in_words(args, &source, &connections, &quality));
+        say(&in_words(args, &source, &connections, &quality))?;
     }
     Ok(Ending::Done)
 }

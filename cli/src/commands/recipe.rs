@@ -11,7 +11,7 @@ use shapeop::problem::recipes::{self, RecipeOptions};
 
 use crate::Ending;
 use crate::args::{Colour, OutputArgs, RecipeArgs};
-use crate::output::Output;
+use crate::output::{Output, say};
 use crate::picture::{Panel, Picture};
 use crate::report::{Report, Subject};
 use crate::run::{self, Run};
@@ -99,6 +99,7 @@ fn place_in_file(
     match face.map(line_of) {
         Some(Some(line)) => anyhow::anyhow!("{}, {line}: {error}", args.mesh.display()),
         Some(None) => anyhow::anyhow!("{}: {error}", args.mesh.display()),
+        None if error.place() == "faces" => anyhow::anyhow!("{}: {error}", args.mesh.display()),
         None => error.into(),
     }
 }
@@ -163,21 +164,13 @@ pub fn tell(report: &Report, output: &Output, as_json: bool, is_quiet: bool) -> 
         return Ok(());
     }
     if as_json {
-        print!("{}", report.to_json()?);
-        return Ok(());
+        return say(report.to_json()?.trim_end());
     }
     let constraints: Vec<String> = report.constraints.iter().map(|(name, count)| format!("{count} {name}")).collect();
-    println!(
-        "{} {}: {} points, {} faces; {}",
-        report.command,
-        report.input,
-        report.points,
-        report.faces,
-        constraints.join(", ")
-    );
-    println!("{}\n", report.ending());
-    println!("{}\n\n{}", table::of_report(report), output.in_lines());
-    Ok(())
+    let Report { command, input, points, faces, .. } = report;
+    let start = format!("{command} {input}: {points} points, {faces} faces; {}", constraints.join(", "));
+    let (ending, table, files) = (report.ending(), table::of_report(report), output.in_lines());
+    say(&format!("{start}\n{ending}\n\n{table}\n\n{files}"))
 }
 
 pub fn ending(found: &Run) -> Ending {

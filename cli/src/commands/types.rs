@@ -6,6 +6,7 @@ use shapeop::constraints::{Projection, Rows, Scalars, TypeIndex, TypeInfo, types
 
 use crate::Ending;
 use crate::args::TypesArgs;
+use crate::output::say;
 
 pub fn run(args: &TypesArgs, is_quiet: bool) -> Result<Ending> {
     let infos: Vec<&TypeInfo> = match &args.name {
@@ -17,15 +18,15 @@ pub fn run(args: &TypesArgs, is_quiet: bool) -> Result<Ending> {
     }
     if args.json {
         let list: Vec<_> = infos.iter().map(|info| as_json(info)).collect();
-        println!("{}", serde_json::to_string_pretty(&list)?);
-    } else if args.name.is_some() {
-        infos.iter().for_each(|info| println!("{}", explained(info)));
+        say(&serde_json::to_string_pretty(&list)?)?;
+    } else if let (Some(_), [info]) = (&args.name, &infos[..]) {
+        say(&explained(info))?;
     } else {
-        println!("  {:<21}  {:<9}  {:<27}  what it does", "type", "points", "scalars");
-        for info in infos {
-            println!("  {:<21}  {:<9}  {:<27}  {}", info.name, point_counts(info), scalar_names(info), info.help);
-        }
-        println!("\n  shapeop types NAME explains one.");
+        let line = |cells: [&str; 4]| format!("  {:<21}  {:<9}  {:<27}  {}", cells[0], cells[1], cells[2], cells[3]);
+        let mut lines = vec![line(["type", "points", "scalars", "what it does"])];
+        lines.extend(infos.iter().map(|info| line([info.name, &point_counts(info), &scalar_names(info), info.help])));
+        lines.push("\n  shapeop types NAME explains one.".to_owned());
+        say(&lines.join("\n"))?;
     }
     Ok(Ending::Done)
 }
