@@ -67,6 +67,7 @@ pub mod capi;
 pub mod constraints;
 pub mod error;
 pub mod linalg;
+pub mod mesh;
 pub mod problem;
 pub mod solver;
 

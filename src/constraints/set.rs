@@ -193,14 +193,24 @@ impl ConstraintSet {
     /// In this order: what [`Self::check_editable`] refuses, the number of scalars does not fit
     /// (`InvalidArgumentLength`), a scalar is outside its domain (`InvalidValue`). Nothing changes then.
     pub fn edit(&mut self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<Edited> {
-        let place = self.editable_place(type_name, id)?;
+        self.check_edit(type_name, id, scalars)?;
+        let place = self.place(id)?;
         let slot = place.slot as usize;
         let group = &mut self.groups[place.type_index.0 as usize];
-        check_scalars(place.type_index, group.batch.indices(slot).len(), scalars)?;
         if group.batch.scalars(slot) == scalars {
             return Ok(Edited::Nothing);
         }
         Ok(if group.batch.set_scalars(slot, scalars) { Edited::Rows } else { Edited::Targets })
+    }
+
+    /// Refuses what [`ConstraintSet::edit`] would refuse.
+    ///
+    /// # Errors
+    /// As [`ConstraintSet::edit`].
+    pub fn check_edit(&self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<()> {
+        let place = self.editable_place(type_name, id)?;
+        let group = &self.groups[place.type_index.0 as usize];
+        check_scalars(place.type_index, group.batch.indices(place.slot as usize).len(), scalars)
     }
 
     /// Sets the weight of a constraint; returns true if it is another one than before.
