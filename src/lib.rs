@@ -75,3 +75,7 @@ pub mod solver;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/adding-a-constraint.md")]
 struct AddingAConstraint;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -43,9 +43,13 @@ fn a_spring_under_a_force_stretches_by_force_over_stiffness() {
     let mut solver = solver(&[[1.0, 2.0, 3.0]]);
     solver.add_constraint("Closeness", &[0], 4.0).unwrap();
     solver.add_force(Force::Vertex { force: DVec3::new(2.0, 0.0, -1.0), point: 0 }).unwrap();
+    // Before and after, the potential of the force counts: −f·x, then ½ w (f/w)² − f·x.
+    assert_eq!(solver.energy(), -(2.0 * 1.0 - 3.0));
     solver.init().unwrap();
+    assert_eq!(solver.energy(), -(2.0 * 1.0 - 3.0));
     solver.solve(1).unwrap();
     assert_near(solver.points()[0], [1.5, 2.0, 2.75], 1e-15);
+    assert!((solver.energy() - (0.5 * 5.0 / 4.0 - (2.0 * 1.5 - 2.75))).abs() < 1e-15);
 }
 
 #[test]
@@ -407,8 +411,8 @@ fn a_refused_solve_leaves_the_energy_as_it_was() {
     let back = solver.add_force(push(-1.0)).unwrap();
     solver.init().unwrap();
     solver.solve(1).unwrap();
-    let energy = solver.energy();
     solver.remove_force(back).unwrap();
+    let energy = solver.energy();
     assert_eq!(solver.solve(1).unwrap_err().status(), Status::Unbounded);
     assert_eq!(solver.energy(), energy);
 

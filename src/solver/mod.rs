@@ -314,10 +314,20 @@ impl Solver {
         self.constraints.violations(&self.points)
     }
 
-    /// The energy at the current points: `½ Σ s ‖A x − P(x)‖²`, in static mode minus the forces' potential, in dynamic
-    /// mode plus `½ (x−y)ᵀ M (x−y)` with the `y` of the last step.
+    /// The energy at the current points: `½ Σ s ‖A x − P(x)‖²`, in static mode minus the potential of the forces as they
+    /// are now, in dynamic mode plus `½ (x−y)ᵀ M (x−y)` with the `y` of the last step.
     pub fn energy(&self) -> f64 {
-        System::constraint_energy(&self.constraints, &self.points) + self.external_energy()
+        let is_dynamic = self.dynamics.as_ref().is_some_and(|dynamics| dynamics.mode == Mode::Dynamic);
+        let external = if is_dynamic { self.external_energy() } else { -self.work_of_forces() };
+        System::constraint_energy(&self.constraints, &self.points) + external
+    }
+
+    /// `external · x` of static mode, from the forces as they are now.
+    fn work_of_forces(&self) -> f64 {
+        let factor = self.dynamics.as_ref().map_or(1.0, |dynamics| dynamics.inertia() * dynamics.timestep.powi(2));
+        let mut forces = vec![DVec3::ZERO; self.points.len()];
+        self.forces.sum_into(&mut forces);
+        factor * forces.iter().zip(&self.points).map(|(force, x)| force.dot(*x)).sum::<f64>()
     }
 
     /// The number of points that no constraint of a weight above 0 holds.

@@ -1,9 +1,10 @@
 //! `cargo xtask`: set-up and checks. No product code.
 
 mod dist;
+mod docs;
 mod header;
-mod schema;
 mod shell;
+mod show;
 mod test;
 
 use std::path::PathBuf;
@@ -33,8 +34,13 @@ enum Command {
         #[arg(long)]
         check: bool,
     },
-    /// Write docs/problem.schema.json from the problem types.
-    Schema,
+    /// Write what is made from the code: docs/constraints.md and docs/problem.schema.json.
+    Docs,
+    /// Measure what the library promises; print each figure beside its target; fail if one is short.
+    Show {
+        /// What to show.
+        area: show::Area,
+    },
     /// Set up what the tests need, then run all of them. CI=true: fail if anything is missing.
     Test,
 }
@@ -43,7 +49,8 @@ fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Dist { folder, profile } => dist::run(&folder, &profile),
         Command::Header { check } => header::run(check),
-        Command::Schema => schema::run(),
+        Command::Docs => docs::run(),
+        Command::Show { area } => show::run(area),
         Command::Test => test::run(),
     }
 }
