@@ -60,10 +60,14 @@
 //! # Ok::<(), shapeop::error::Error>(())
 //! ```
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
+#![deny(unsafe_code)]
 
+#[allow(unsafe_code, reason = "the C boundary; nowhere else")]
+pub mod capi;
 pub mod constraints;
 pub mod error;
 pub mod linalg;
+pub mod mesh;
 pub mod problem;
 pub mod solver;
 
@@ -71,3 +75,7 @@ pub mod solver;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/adding-a-constraint.md")]
 struct AddingAConstraint;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

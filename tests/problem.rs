@@ -1,7 +1,8 @@
 //! The JSON form: what is written is read back, and what errs is refused with its place.
 
+use proptest::prelude::*;
 use shapeop::error::Status;
-use shapeop::problem::{ForceKind, ForceSignature, Mode, Problem, Signature};
+use shapeop::problem::{Edit, ForceKind, ForceSignature, Mode, Problem, Signature};
 
 fn sample() -> Problem {
     Problem {
@@ -21,6 +22,7 @@ fn sample() -> Problem {
             ForceSignature { kind: ForceKind::Gravity, force: [0.0, 0.0, -9.81], id: None },
             ForceSignature { kind: ForceKind::Vertex, force: [1.0, 0.0, 0.0], id: Some(2) },
         ],
+        edits: vec![Edit { before_step: 2, constraint: 1, scalars: vec![0.0, 0.5, -1.0] }],
         faces: vec![vec![0, 1, 2]],
         edges: vec![[0, 1]],
         ..Problem::default()
@@ -36,6 +38,19 @@ fn what_is_written_is_read_back_to_the_last_bit() {
     assert_eq!(Problem::from_json(&text).unwrap().to_json(), text);
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_finite_number_is_read_back_to_the_last_bit(bits in prop::collection::vec(any::<u64>(), 3..60)) {
+        let numbers: Vec<f64> = bits.into_iter().map(f64::from_bits).filter(|number| number.is_finite()).collect();
+        let points: Vec<[f64; 3]> = numbers.chunks_exact(3).map(|chunk| [chunk[0], chunk[1], chunk[2]]).collect();
+        let back = Problem::from_json(&Problem { points: points.clone(), ..Problem::default() }.to_json()).unwrap();
+        let bits = |points: &[[f64; 3]]| points.iter().flatten().map(|number| number.to_bits()).collect::<Vec<_>>();
+        prop_assert_eq!(bits(&back.points), bits(&points));
+    }
+}
+
 #[test]
 fn points_alone_are_a_problem() {
     let problem = Problem::from_json(r#"{"version": 1, "points": [[0, 0, 0]]}"#).unwrap();
@@ -45,6 +60,7 @@ fn points_alone_are_a_problem() {
 #[test]
 fn what_errs_is_refused_with_its_place() {
     let points = r#""version": 1, "points": [[0,0,0],[1,0,0],[0,1,0]]"#;
+    let closeness = r#""constraints": [{"type": "Closeness", "indices": [0]}]"#;
     let cases = [
         (
             format!(r#"{{{points}, "constraints": [{{"type": "Plane", "indices": [0, 1, 5000]}}]}}"#),
@@ -107,6 +123,34 @@ fn what_errs_is_refused_with_its_place() {
             format!(r#"{{{points}, "faces": [[0, 1, 2], [0, 1, 3]]}}"#),
             "faces[1][2]: 3 is out of range for 3 points",
             Status::IndexOutOfRange,
+        ),
+        (
+            format!(
+                r#"{{{points}, "mode": "dynamic", "edits": [{{"before_step": 1, "constraint": 0, "scalars": []}}]}}"#
+            ),
+            "edits[0].constraint: 0 is out of range for 0 constraints",
+            Status::IndexOutOfRange,
+        ),
+        (
+            format!(
+                r#"{{{points}, {closeness}, "edits": [{{"before_step": 1, "constraint": 0, "scalars": [0,0,0]}}]}}"#
+            ),
+            "edits[0]: edits are made between time steps: expected mode \"dynamic\", found \"static\"",
+            Status::InvalidValue,
+        ),
+        (
+            format!(
+                r#"{{{points}, "mode": "dynamic", {closeness}, "edits": [{{"before_step": 0, "constraint": 0, "scalars": [0,0,0]}}]}}"#
+            ),
+            "edits[0].before_step: steps count from 1, found 0",
+            Status::InvalidValue,
+        ),
+        (
+            format!(
+                r#"{{{points}, "mode": "dynamic", {closeness}, "edits": [{{"before_step": 1, "constraint": 0, "scalars": [0,0]}}]}}"#
+            ),
+            "edits[0].scalars: expected 3 for \"Closeness\"",
+            Status::InvalidArgumentLength,
         ),
         (format!(r#"{{{points}, "masses": 0}}"#), "masses: expected a number above 0, found 0", Status::InvalidValue),
         (

@@ -1,4 +1,4 @@
-//! The committed JSON schema is the one that the code makes. `cargo xtask schema` writes it anew.
+//! The committed JSON schema is the one that the code makes. `cargo xtask docs` writes it anew.
 
 use std::path::Path;
 
@@ -10,5 +10,5 @@ fn the_committed_schema_is_current() {
     if std::env::var_os("SHAPEOP_WRITE_SCHEMA").is_some() {
         std::fs::write(&file, &text).unwrap();
     }
-    assert_eq!(std::fs::read_to_string(&file).unwrap(), text, "run `cargo xtask schema` and look at the difference");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), text, "run `cargo xtask docs` and look at the difference");
 }

@@ -43,9 +43,13 @@ fn a_spring_under_a_force_stretches_by_force_over_stiffness() {
     let mut solver = solver(&[[1.0, 2.0, 3.0]]);
     solver.add_constraint("Closeness", &[0], 4.0).unwrap();
     solver.add_force(Force::Vertex { force: DVec3::new(2.0, 0.0, -1.0), point: 0 }).unwrap();
+    // Before and after, the potential of the force counts: −f·x, then ½ w (f/w)² − f·x.
+    assert_eq!(solver.energy(), -(2.0 * 1.0 - 3.0));
     solver.init().unwrap();
+    assert_eq!(solver.energy(), -(2.0 * 1.0 - 3.0));
     solver.solve(1).unwrap();
     assert_near(solver.points()[0], [1.5, 2.0, 2.75], 1e-15);
+    assert!((solver.energy() - (0.5 * 5.0 / 4.0 - (2.0 * 1.5 - 2.75))).abs() < 1e-15);
 }
 
 #[test]
@@ -327,6 +331,19 @@ fn edits_take_effect_at_the_next_solve() {
 }
 
 #[test]
+fn a_removed_constraint_counts_no_more_even_before_the_next_solve() {
+    let mut solver = solver(&[[0.0; 3], [1.0, 0.0, 0.0]]);
+    let edge = solver.add_constraint("EdgeStrain", &[0, 1], 1.0).unwrap();
+    solver.edit_constraint("EdgeStrain", edge, &[2.0, 1.0, 1.0]).unwrap();
+    // ½ w L₀ (‖e‖/L − 1)² with w = L₀ = 1, ‖e‖/L = ½.
+    assert!((solver.energy() - 0.125).abs() < 1e-15);
+    assert_eq!(solver.unconstrained_count(), 0);
+    solver.remove_constraint(edge).unwrap();
+    assert_eq!(solver.energy(), 0.0);
+    assert_eq!(solver.unconstrained_count(), 2);
+}
+
+#[test]
 fn points_may_be_added_and_removed_while_nothing_refers_to_them() {
     let mut solver = solver(&[[0.0; 3], [1.0, 0.0, 0.0]]);
     solver.add_constraint("EdgeStrain", &[0, 1], 1.0).unwrap();
@@ -369,4 +386,44 @@ fn without_points_or_constraints_nothing_happens() {
     loose.init().unwrap();
     loose.solve(3).unwrap();
     assert_eq!((loose.points()[1], loose.unconstrained_count()), (DVec3::new(4.0, 5.0, 6.0), 2));
+}
+
+#[test]
+fn a_report_that_would_not_be_finite_is_refused_and_changes_nothing() {
+    // Lengths of points that are finite overflow, and so does the energy.
+    let mut solver = solver(&[[0.0; 3], [1.0, 0.0, 0.0]]);
+    solver.add_constraint("EdgeStrain", &[0, 1], 1.0).unwrap();
+    solver.init().unwrap();
+    let far = [DVec3::ZERO, DVec3::splat(1e200)];
+    solver.set_points(&far).unwrap();
+    let error = solver.solve_until(&SolveOptions::default(), &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert_eq!(error.status(), Status::InvalidValue);
+    assert_eq!(solver.points(), far);
+}
+
+#[test]
+fn a_refused_solve_leaves_the_energy_as_it_was() {
+    // Refused because a force acts along a free motion, because the step overflows, and because the mass does.
+    let mut solver = solver(&WARPED);
+    solver.add_constraint("Plane", &[0, 1, 2, 3], 1.0).unwrap();
+    let push = |z| Force::Vertex { force: DVec3::Z * z, point: 0 };
+    solver.add_force(push(1.0)).unwrap();
+    let back = solver.add_force(push(-1.0)).unwrap();
+    solver.init().unwrap();
+    solver.solve(1).unwrap();
+    solver.remove_force(back).unwrap();
+    let energy = solver.energy();
+    assert_eq!(solver.solve(1).unwrap_err().status(), Status::Unbounded);
+    assert_eq!(solver.energy(), energy);
+
+    solver.init_dynamic(1.0, 1.0, 0.5).unwrap();
+    solver.solve(1).unwrap();
+    let (energy, points) = (solver.energy(), solver.points().to_vec());
+    assert!(energy > 0.0);
+    solver.add_force(push(1e308)).unwrap();
+    solver.set_timestep(1e10).unwrap();
+    assert_eq!(solver.solve(1).unwrap_err().status(), Status::InvalidValue);
+    assert_eq!((solver.energy(), solver.points()), (energy, points.as_slice()));
+    assert!(solver.init_dynamic(1e308, 1.0, 1e-300).is_err());
+    assert_eq!((solver.energy(), solver.points()), (energy, points.as_slice()));
 }

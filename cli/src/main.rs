@@ -1,1 +1,63 @@
-fn main() {}
+//! The command line of `shapeop`. It reads files, calls the library, and writes files: nothing that a Rust program
+//! could not do.
+
+mod args;
+mod camera;
+mod colours;
+mod commands;
+mod output;
+mod picture;
+mod plot;
+mod progress;
+mod quality;
+mod raster;
+mod report;
+mod run;
+mod shown;
+mod table;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Cli, Command};
+
+/// How a command ended that did not fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    Done,
+    /// Ctrl-C; what was reached is written.
+    Interrupted,
+}
+
+/// The exit code of a program that was stopped with Ctrl-C: 128 and the number of SIGINT.
+const INTERRUPTED: u8 = 130;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let is_quiet = cli.quiet;
+    let ending = match cli.command {
+        Command::Demo(args) => commands::demo::run(&args, is_quiet),
+        Command::Solve(args) => commands::solve::run(&args, is_quiet),
+        Command::Planarize(args) => commands::recipe::run(commands::recipe::Recipe::Planarize, &args, is_quiet),
+        Command::Circularize(args) => commands::recipe::run(commands::recipe::Recipe::Circularize, &args, is_quiet),
+        Command::Smooth(args) => commands::recipe::run(commands::recipe::Recipe::Smooth, &args, is_quiet),
+        Command::Regularize(args) => commands::recipe::run(commands::recipe::Recipe::Regularize, &args, is_quiet),
+        Command::Equalize(args) => {
+            let recipe = commands::recipe::Recipe::Equalize { length: args.length };
+            commands::recipe::run(recipe, &args.recipe, is_quiet)
+        }
+        Command::Check(args) => commands::check::run(&args, is_quiet),
+        Command::Types(args) => commands::types::run(&args, is_quiet),
+    };
+    match ending {
+        Ok(Ending::Done) => ExitCode::SUCCESS,
+        Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
+        Err(error) => {
+            // A closed standard error leaves the exit code to tell.
+            let _ = writeln!(std::io::stderr(), "error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -53,6 +53,9 @@ impl Constraint for Angle {
         edited_as: None,
     };
 
+    // The published Grasshopper client's help calls it so.
+    const ALIAS: Option<&'static str> = Some("AngleConstraint");
+
     fn at_rest(_x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         scalars.extend([0.0, PI]);
         Self
@@ -145,6 +148,12 @@ mod tests {
                 assert!(cost <= other + 1e-15, "bound {bound}: a split at {turn} costs less");
             }
         }
+    }
+
+    #[test]
+    fn the_name_in_the_published_clients_help_is_accepted() {
+        let found = super::super::TypeIndex::named("AngleConstraint").unwrap();
+        assert_eq!(found.info().name, "Angle");
     }
 
     #[test]

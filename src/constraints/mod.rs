@@ -102,6 +102,9 @@ pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// What the world needs to know of this type.
     const INFO: TypeInfo;
 
+    /// Another name that signatures may use for it.
+    const ALIAS: Option<&'static str> = None;
+
     /// Captures the rest state of `x` and appends the default scalars.
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self;
 
@@ -168,6 +171,17 @@ impl TypeInfo {
         Err(Error::new(Status::InvalidArgumentLength, reason).at("indices"))
     }
 
+    /// Refuses a type whose constraints have no scalars.
+    ///
+    /// # Errors
+    /// Status `InvalidConstraintType`.
+    pub fn check_editable(&self) -> Result<()> {
+        if self.scalars != Scalars::None {
+            return Ok(());
+        }
+        Err(Error::new(Status::InvalidConstraintType, format!("\"{}\" has no scalars to edit", self.name)))
+    }
+
     /// Refuses a number of scalars that a constraint of `k` points does not take.
     ///
     /// # Errors
@@ -175,9 +189,7 @@ impl TypeInfo {
     /// `InvalidValue`.
     pub fn check_scalar_count(&self, k: usize, count: usize) -> Result<()> {
         match self.scalars {
-            Scalars::None => {
-                Err(Error::new(Status::InvalidConstraintType, format!("\"{}\" has no scalars to edit", self.name)))
-            }
+            Scalars::None => self.check_editable(),
             Scalars::Named(names) if count == names.len() => Ok(()),
             Scalars::Named(names) => {
                 let list = names.iter().map(|scalar| scalar.name).collect::<Vec<_>>().join(", ");
@@ -202,13 +214,12 @@ impl TypeInfo {
 pub struct TypeIndex(u16);
 
 impl TypeIndex {
-    /// Finds a type by its name in signatures. "AngleConstraint", as the published client's help has it, is "Angle".
+    /// Finds a type by its name, or its alias, in signatures.
     ///
     /// # Errors
     /// Status `InvalidConstraintType`, with the list of names.
     pub fn named(name: &str) -> Result<Self> {
-        let known = if name == "AngleConstraint" { "Angle" } else { name };
-        match REGISTRY.iter().position(|entry| entry.info.name == known) {
+        match REGISTRY.iter().position(|entry| entry.info.name == name || entry.alias == Some(name)) {
             Some(index) => Ok(Self(index as u16)),
             None => {
                 let names = types().map(|info| info.name).collect::<Vec<_>>().join(", ");
@@ -231,13 +242,14 @@ pub fn types() -> impl ExactSizeIterator<Item = &'static TypeInfo> {
 
 struct Entry {
     info: &'static TypeInfo,
+    alias: Option<&'static str>,
     new_batch: fn() -> Box<dyn Batch>,
     /// Refuses scalars outside the type's domain.
     check_scalars: fn(&[f64]) -> Result<()>,
 }
 
 const fn entry<T: Constraint>() -> Entry {
-    Entry { info: &T::INFO, new_batch: TypedBatch::<T>::new_box, check_scalars: T::check_scalars }
+    Entry { info: &T::INFO, alias: T::ALIAS, new_batch: TypedBatch::<T>::new_box, check_scalars: T::check_scalars }
 }
 
 /// Declares the modules and the registry. `cargo fmt` does not see through it: format these files by name.

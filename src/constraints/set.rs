@@ -178,30 +178,39 @@ impl ConstraintSet {
         Ok(first_id)
     }
 
-    /// Replaces the scalars of a constraint. Returns what the edit changed.
+    /// Refuses an edit by what `type_name` and `id` alone decide.
     ///
     /// # Errors
     /// In this order: the type cannot be edited (`InvalidConstraintType`), `id` is no constraint of that type
-    /// (`UnmatchingConstraintId`), the number of scalars does not fit (`InvalidArgumentLength`), a scalar is outside its
-    /// domain (`InvalidValue`). Nothing changes then.
+    /// (`UnmatchingConstraintId`).
+    pub fn check_editable(&self, type_name: &str, id: ConstraintId) -> Result<()> {
+        self.editable_place(type_name, id).map(|_| ())
+    }
+
+    /// Replaces the scalars of a constraint. Returns what the edit changed.
+    ///
+    /// # Errors
+    /// In this order: what [`Self::check_editable`] refuses, the number of scalars does not fit
+    /// (`InvalidArgumentLength`), a scalar is outside its domain (`InvalidValue`). Nothing changes then.
     pub fn edit(&mut self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<Edited> {
-        let named = TypeIndex::named(type_name)?;
-        if named.info().scalars == super::Scalars::None {
-            named.info().check_scalar_count(1, 0)?;
-        }
+        self.check_edit(type_name, id, scalars)?;
         let place = self.place(id)?;
-        let info = place.type_index.info();
-        if named != place.type_index && info.edited_as != Some(named.info().name) {
-            let reason = format!("constraint {id} is of type \"{}\", not \"{type_name}\"", info.name);
-            return Err(Error::new(Status::UnmatchingConstraintId, reason).at("constraint id"));
-        }
         let slot = place.slot as usize;
         let group = &mut self.groups[place.type_index.0 as usize];
-        check_scalars(place.type_index, group.batch.indices(slot).len(), scalars)?;
         if group.batch.scalars(slot) == scalars {
             return Ok(Edited::Nothing);
         }
         Ok(if group.batch.set_scalars(slot, scalars) { Edited::Rows } else { Edited::Targets })
+    }
+
+    /// Refuses what [`ConstraintSet::edit`] would refuse.
+    ///
+    /// # Errors
+    /// As [`ConstraintSet::edit`].
+    pub fn check_edit(&self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<()> {
+        let place = self.editable_place(type_name, id)?;
+        let group = &self.groups[place.type_index.0 as usize];
+        check_scalars(place.type_index, group.batch.indices(place.slot as usize).len(), scalars)
     }
 
     /// Sets the weight of a constraint; returns true if it is another one than before.
@@ -221,7 +230,9 @@ impl ConstraintSet {
     /// The id is no constraint.
     pub fn remove(&mut self, id: ConstraintId) -> Result<()> {
         let place = self.place(id)?;
-        self.groups[place.type_index.0 as usize].is_removed[place.slot as usize] = true;
+        let (group, slot) = (&mut self.groups[place.type_index.0 as usize], place.slot as usize);
+        group.is_removed[slot] = true;
+        group.weights[slot] = 0.0;
         self.places[id] = None;
         self.removed_count += 1;
         Ok(())
@@ -287,6 +298,18 @@ impl ConstraintSet {
             (most as usize >= point_count).then_some((id, most))
         })
         .next()
+    }
+
+    fn editable_place(&self, type_name: &str, id: ConstraintId) -> Result<Place> {
+        let named = TypeIndex::named(type_name)?.info();
+        named.check_editable()?;
+        let place = self.place(id)?;
+        let info = place.type_index.info();
+        if named.name != info.name && info.edited_as != Some(named.name) {
+            let reason = format!("constraint {id} is of type \"{}\", not \"{type_name}\"", info.name);
+            return Err(Error::new(Status::UnmatchingConstraintId, reason).at("constraint id"));
+        }
+        Ok(place)
     }
 
     fn place(&self, id: ConstraintId) -> Result<Place> {

@@ -5,13 +5,15 @@
 //! `constraints[17].indices[2]: 5000 is out of range for 4096 points`.
 
 mod forces;
+mod json;
+pub mod recipes;
 
 pub use forces::{Force, ForceId, ForceSet};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::constraints::{ConstraintSet, NewConstraints};
+use crate::constraints::{ConstraintId, ConstraintSet, NewConstraints};
 use crate::error::{Error, Result, Status, finite};
 
 /// The version of the JSON form that this library writes and reads.
@@ -72,6 +74,19 @@ pub struct ForceSignature {
     pub id: Option<u32>,
 }
 
+/// New scalars of a constraint from a time step on: a handle that is moved, a length that changes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Edit {
+    /// The time step, from 1, before which it is made.
+    pub before_step: u32,
+    /// The constraint, by its place in `constraints`.
+    pub constraint: u32,
+    /// Its scalars, as its type states them.
+    pub scalars: Vec<f64>,
+}
+
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -120,6 +135,9 @@ pub struct Problem {
     /// The forces, in the order of their ids.
     #[serde(default)]
     pub forces: Vec<ForceSignature>,
+    /// Edits of constraints between time steps (dynamic mode), for whoever makes the steps: see [`Problem::edits_before`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub edits: Vec<Edit>,
     /// When to stop.
     #[serde(default)]
     pub settings: Settings,
@@ -149,6 +167,7 @@ impl Default for Problem {
             points: Vec::new(),
             constraints: Vec::new(),
             forces: Vec::new(),
+            edits: Vec::new(),
             settings: Settings::default(),
             faces: Vec::new(),
             edges: Vec::new(),
@@ -174,11 +193,19 @@ impl Problem {
         Ok(problem)
     }
 
-    /// The JSON form, indented, ending in a newline.
+    /// The JSON form: a line per point, constraint, force, face and edge, ending in a newline.
     pub fn to_json(&self) -> String {
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text
+        json::to_text(self)
+    }
+
+    /// The edits to make before a time step, counted from 1: the type's name, the constraint and its new scalars, as
+    /// `Solver::edit_constraint` takes them.
+    pub fn edits_before(&self, step: u32) -> impl Iterator<Item = (&str, ConstraintId, &[f64])> {
+        let edits = self.edits.iter().filter(move |edit| edit.before_step == step);
+        edits.filter_map(|edit| {
+            let id = edit.constraint as ConstraintId;
+            Some((self.constraints.get(id)?.type_name.as_str(), id, edit.scalars.as_slice()))
+        })
     }
 
     /// Checks everything that a solver would refuse.
@@ -252,6 +279,26 @@ impl Problem {
                 .and_then(|force| forces.add(force, points.len()))
                 .map_err(|error| error.at(format!("forces[{i}]")))?;
         }
+        for (i, edit) in self.edits.iter().enumerate() {
+            self.check_edit(edit, &constraints).map_err(|error| error.at(format!("edits[{i}]")))?;
+        }
         Ok((points, constraints, forces))
+    }
+
+    fn check_edit(&self, edit: &Edit, constraints: &ConstraintSet) -> Result<()> {
+        let id = edit.constraint as ConstraintId;
+        let Some(signature) = self.constraints.get(id) else {
+            let reason = format!("{id} is out of range for {} constraints", self.constraints.len());
+            return Err(Error::new(Status::IndexOutOfRange, reason).at("constraint"));
+        };
+        if self.mode == Mode::Static {
+            let reason = "edits are made between time steps: expected mode \"dynamic\", found \"static\"";
+            return Err(Error::new(Status::InvalidValue, reason));
+        }
+        if edit.before_step == 0 {
+            let reason = "steps count from 1, found 0";
+            return Err(Error::new(Status::InvalidValue, reason).at("before_step"));
+        }
+        constraints.check_edit(&signature.type_name, id, &edit.scalars)
     }
 }

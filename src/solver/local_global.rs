@@ -24,6 +24,7 @@ impl Solver {
                 solver.local_step(false, &mut clock);
                 solver.global_step(&mut clock);
             }
+            true
         })
     }
 
@@ -41,7 +42,7 @@ impl Solver {
             }
         }
         let mut found = None;
-        let result = self.run(|solver| found = Some(solver.iterate(options, progress)));
+        let result = self.run(|solver| found.insert(solver.iterate(options, progress)).is_finite());
         let mut report = match result {
             Ok(()) => found.unwrap_or_else(Report::empty),
             Err(error) if error.status() == Status::Unbounded => {
@@ -56,6 +57,9 @@ impl Solver {
             }
             Err(error) => return Err(error),
         };
+        if !report.is_finite() {
+            return Err(overflow());
+        }
         if let Some(system) = &self.system {
             report.analysis_seconds = system.analysis_seconds;
             report.factorisation_seconds = system.factorisation_seconds;
@@ -64,24 +68,25 @@ impl Solver {
     }
 
     /// Brings the system up to date, sets up the external terms, runs `iterations` and, in dynamic mode, ends the time
-    /// step. Restores the points if anything fails.
-    fn run(&mut self, iterations: impl FnOnce(&mut Self)) -> Result<()> {
+    /// step. `iterations` returns false where a number overflowed. If anything fails, points and energy are as before.
+    fn run(&mut self, iterations: impl FnOnce(&mut Self) -> bool) -> Result<()> {
         self.prepare()?;
-        self.begin()?;
-        iterations(self);
-        let is_finite = self.points.iter().all(|point| point.is_finite());
-        if is_finite && self.end_step() {
-            return Ok(());
+        self.workspace.swap_external();
+        let result = self.begin().and_then(|()| {
+            let is_finite = iterations(self) && self.points.iter().all(|point| point.is_finite());
+            if is_finite && self.end_step() { Ok(()) } else { Err(overflow()) }
+        });
+        if result.is_err() {
+            self.points.copy_from_slice(&self.workspace.start);
+            self.workspace.swap_external();
         }
-        self.points.copy_from_slice(&self.workspace.start);
-        let reason = "coordinates, forces or weights are so large that the result is not finite; nothing was changed";
-        Err(Error::new(Status::InvalidValue, reason))
+        result
     }
 
     /// Computes the external terms and, in dynamic mode, moves the points to `y`.
     fn begin(&mut self) -> Result<()> {
         let (Some(system), Some(dynamics)) = (&mut self.system, &self.dynamics) else { return Ok(()) };
-        let Workspace { forces, external, momentum, start } = &mut self.workspace;
+        let Workspace { forces, external, momentum, kept, start } = &mut self.workspace;
         start.clear();
         start.extend_from_slice(&self.points);
         forces.resize(self.points.len(), DVec3::ZERO);
@@ -101,6 +106,10 @@ impl Solver {
                 external.extend(momentum.iter().map(|y| inertia * *y));
                 self.points.copy_from_slice(momentum);
             }
+        }
+        // The next call exchanges them, and should not allocate then.
+        for (kept, current) in kept.iter_mut().zip([external, momentum]) {
+            kept.reserve(current.len().saturating_sub(kept.len()));
         }
         Ok(())
     }
@@ -139,8 +148,8 @@ impl Solver {
             least_move = least_move.min(report.largest_move);
             let now =
                 Progress { iteration, energy: report.energy_after, largest_move: report.largest_move, solver: self };
-            let outcome = if !report.energy_after.is_finite() {
-                // The points are no better; the caller of this function restores them.
+            let outcome = if !report.is_finite() {
+                // The caller of this function refuses it and restores the points.
                 Some(Outcome::Stalled)
             } else if progress(&now) == ControlFlow::Break(()) {
                 Some(Outcome::Cancelled)
@@ -210,7 +219,17 @@ impl Solver {
     }
 }
 
+fn overflow() -> Error {
+    let reason = "coordinates, forces or weights are so large that the result is not finite; nothing was changed";
+    Error::new(Status::InvalidValue, reason)
+}
+
 impl Report {
+    /// False if a number overflowed.
+    fn is_finite(&self) -> bool {
+        [self.energy_before, self.energy_after, self.largest_move].iter().all(|number| number.is_finite())
+    }
+
     fn empty() -> Self {
         Self {
             iterations: 0,

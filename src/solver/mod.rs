@@ -75,6 +75,8 @@ struct Workspace {
     external: Vec<DVec3>,
     /// Where momentum alone takes the points (dynamic mode).
     momentum: Vec<DVec3>,
+    /// `external` and `momentum` of the call before, for when this one is refused.
+    kept: [Vec<DVec3>; 2],
     /// The points at the start of the call.
     start: Vec<DVec3>,
 }
@@ -86,6 +88,15 @@ impl std::fmt::Debug for Solver {
             .field("constraint_count", &self.constraint_count())
             .field("force_count", &self.force_count())
             .finish_non_exhaustive()
+    }
+}
+
+impl Workspace {
+    /// Exchanges `external` and `momentum` with what is kept: before they are computed anew, and again if that is refused.
+    fn swap_external(&mut self) {
+        let [external, momentum] = &mut self.kept;
+        std::mem::swap(&mut self.external, external);
+        std::mem::swap(&mut self.momentum, momentum);
     }
 }
 
@@ -170,6 +181,14 @@ impl Solver {
             self.invalidate();
         }
         Ok(first)
+    }
+
+    /// Refuses an edit by what `type_name` and `id` alone decide.
+    ///
+    /// # Errors
+    /// See [`ConstraintSet::check_editable`].
+    pub fn check_editable(&self, type_name: &str, id: ConstraintId) -> Result<()> {
+        self.constraints.check_editable(type_name, id)
     }
 
     /// Replaces the scalars of a constraint. The next solve uses them; it factorises again only if rows changed.
@@ -295,10 +314,20 @@ impl Solver {
         self.constraints.violations(&self.points)
     }
 
-    /// The energy at the current points: `½ Σ s ‖A x − P(x)‖²`, in static mode minus the forces' potential, in dynamic
-    /// mode plus `½ (x−y)ᵀ M (x−y)` with the `y` of the last step.
+    /// The energy at the current points: `½ Σ s ‖A x − P(x)‖²`, in static mode minus the potential of the forces as they
+    /// are now, in dynamic mode plus `½ (x−y)ᵀ M (x−y)` with the `y` of the last step.
     pub fn energy(&self) -> f64 {
-        System::constraint_energy(&self.constraints, &self.points) + self.external_energy()
+        let is_dynamic = self.dynamics.as_ref().is_some_and(|dynamics| dynamics.mode == Mode::Dynamic);
+        let external = if is_dynamic { self.external_energy() } else { -self.work_of_forces() };
+        System::constraint_energy(&self.constraints, &self.points) + external
+    }
+
+    /// `external · x` of static mode, from the forces as they are now.
+    fn work_of_forces(&self) -> f64 {
+        let factor = self.dynamics.as_ref().map_or(1.0, |dynamics| dynamics.inertia() * dynamics.timestep.powi(2));
+        let mut forces = vec![DVec3::ZERO; self.points.len()];
+        self.forces.sum_into(&mut forces);
+        factor * forces.iter().zip(&self.points).map(|(force, x)| force.dot(*x)).sum::<f64>()
     }
 
     /// The number of points that no constraint of a weight above 0 holds.
@@ -318,8 +347,6 @@ impl Solver {
         let inertia_before = before.as_ref().filter(|old| old.mode == Mode::Dynamic).map_or(0.0, Dynamics::inertia);
         let new = Dynamics { mode, mass, damping, timestep, initial_timestep: timestep, velocities };
         let inertia = if mode == Mode::Dynamic { new.inertia() } else { 0.0 };
-        self.workspace.external.clear();
-        self.workspace.momentum.clear();
         if inertia != inertia_before {
             self.invalidate();
         }
@@ -328,6 +355,9 @@ impl Solver {
         if prepared.is_err() {
             self.dynamics = before;
             self.invalidate();
+        } else {
+            self.workspace.external.clear();
+            self.workspace.momentum.clear();
         }
         prepared
     }

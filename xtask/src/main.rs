@@ -1,1 +1,56 @@
-fn main() {}
+//! `cargo xtask`: set-up and checks. No product code.
+
+mod dist;
+mod docs;
+mod header;
+mod shell;
+mod show;
+mod test;
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about = "Set-up and checks of the shapeop repository")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Build the library and lay out headers and libraries for C hosts.
+    Dist {
+        /// The folder to fill: lib/, include/, compat/.
+        folder: PathBuf,
+        /// The Cargo profile to build with.
+        #[arg(long, default_value = "release")]
+        profile: String,
+    },
+    /// Write include/shapeop.h from the doc comments in src/capi.
+    Header {
+        /// Write nothing; fail with the difference if the committed header is another one.
+        #[arg(long)]
+        check: bool,
+    },
+    /// Write what is made from the code: docs/constraints.md and docs/problem.schema.json.
+    Docs,
+    /// Measure what the library promises; print each figure beside its target; fail if one is short.
+    Show {
+        /// What to show.
+        area: show::Area,
+    },
+    /// Set up what the tests need, then run all of them. CI=true: fail if anything is missing.
+    Test,
+}
+
+fn main() -> anyhow::Result<()> {
+    match Arguments::parse().command {
+        Command::Dist { folder, profile } => dist::run(&folder, &profile),
+        Command::Header { check } => header::run(check),
+        Command::Docs => docs::run(),
+        Command::Show { area } => show::run(area),
+        Command::Test => test::run(),
+    }
+}

@@ -1,0 +1,81 @@
+//! The files of a run: all written whole, under names that tell what they are.
+
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use shapeop::mesh::Mesh;
+use shapeop::mesh::file::{Format, encode, write_whole};
+
+use crate::args::PictureFormat;
+use crate::raster;
+use crate::report::Report;
+
+/// Where a run writes: `DIR/STEM.COMMAND` and what follows it.
+pub struct Output {
+    folder: PathBuf,
+    stem: String,
+    picture: PictureFormat,
+    /// What was written, by what it is.
+    written: Vec<(&'static str, PathBuf)>,
+}
+
+impl Output {
+    /// Makes the folder if it is not there.
+    pub fn new(folder: &Path, input: &Path, command: &str, picture: PictureFormat) -> Result<Self> {
+        std::fs::create_dir_all(folder).with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
+        let name = input.file_stem().map_or("problem".into(), |stem| stem.to_string_lossy());
+        Ok(Self { folder: folder.to_owned(), stem: format!("{name}.{command}"), picture, written: Vec::new() })
+    }
+
+    fn path(&self, ending: &str) -> PathBuf {
+        self.folder.join(format!("{}{ending}", self.stem))
+    }
+
+    fn write(&mut self, what: &'static str, ending: &str, bytes: &[u8]) -> Result<()> {
+        let path = self.path(ending);
+        write_whole(&path, bytes)?;
+        self.written.push((what, path));
+        Ok(())
+    }
+
+    pub fn mesh(&mut self, mesh: &Mesh, format: Format) -> Result<()> {
+        self.write("mesh", &format!(".{format}"), &encode(mesh, format)?)
+    }
+
+    /// Writes a picture given as SVG in the format asked for. `what` also names the file, except for the first picture.
+    pub fn picture(&mut self, what: &'static str, svg: &str) -> Result<()> {
+        let Some(extension) = self.picture.extension() else { return Ok(()) };
+        let ending = if what == "picture" { format!(".{extension}") } else { format!(".{what}.{extension}") };
+        let bytes = if self.picture == PictureFormat::Svg { svg.as_bytes().to_vec() } else { raster::png(svg)? };
+        self.write(what, &ending, &bytes)
+    }
+
+    pub fn wants_pictures(&self) -> bool {
+        self.picture != PictureFormat::None
+    }
+
+    /// Writes the report, last, so that it lists the other files.
+    pub fn report(&mut self, report: &mut Report) -> Result<()> {
+        let path = self.path(".json");
+        let files = self.written.iter().map(|(what, path)| ((*what).to_owned(), path.display().to_string()));
+        report.files = files.chain([("report".to_owned(), path.display().to_string())]).collect();
+        self.write("report", ".json", report.to_json()?.as_bytes())
+    }
+
+    /// The files written, in lines for the table.
+    pub fn in_lines(&self) -> String {
+        let lines: Vec<String> =
+            self.written.iter().map(|(what, path)| format!("  {what:<12} {}", path.display())).collect();
+        lines.join("\n")
+    }
+}
+
+/// Prints to standard output. A reader that has seen enough, such as `head`, is no failure.
+pub fn say(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("standard output cannot be written"),
+        _ => Ok(()),
+    }
+}

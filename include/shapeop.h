@@ -1,0 +1,672 @@
+/* shapeop: constraint-based geometry. C99 and C++.
+ *
+ * Generated from the sources of the library: do not edit.
+ *
+ * Handles. A ShapeOpSolver* is a small integer (nonzero, below 2^31), not an address: never dereference it. A null
+ * handle, one that was deleted, and one that never was a solver's are recognised and refused. Only the low 32 bits
+ * count.
+ *
+ * Ownership. Every solver of shapeop_create belongs to the caller, who deletes it with shapeop_delete. Arrays belong
+ * to the caller: the library copies what it reads and keeps no pointer. Texts belong to the library and are never
+ * freed; how long they stay valid is said with each function.
+ *
+ * Arrays. Points are double[3 * n]: x y z of point 0, then of point 1, and so on. Lengths of points are counted in
+ * points, all others in entries. An array of length 0 may be null. Results are written only if the call succeeds.
+ *
+ * Errors. A refused call changes nothing, and answers with an error code, with 1 (shapeop_init, shapeop_initDynamic,
+ * shapeop_solve), with -1 (ids, counts, truths) or with null (shapeop_create, shapeop_constraintIndexName). In all
+ * cases, functions without a result included, shapeop_lastError then says why, and its text is empty after a call
+ * that succeeded. Numbers that are not finite are refused where they enter, and none is ever handed out.
+ *
+ * Threads. Any thread may use any solver. A call on a solver that another call is using does not wait: it is refused
+ * as busy. Different solvers can be used at the same time. From inside its own progress callback a solver can be read
+ * (points, counts, energy, violations) and nothing else.
+ *
+ * Units. Lengths are in model units, angles in radians, times in seconds; what a violation is measured in depends on
+ * the type of its constraint: see shapeop_constraint_type.
+ *
+ * Versions. Structs begin with struct_size, to be set to their sizeof: fields may be added at their ends. */
+
+
+#ifndef SHAPEOP_H
+#define SHAPEOP_H
+
+
+#ifndef SHAPEOP_API
+#ifdef _WIN32
+#define SHAPEOP_API __declspec(dllimport)
+#else
+#define SHAPEOP_API
+#endif
+#endif
+
+/**
+ * The version of the ABI that `shapeop_abiVersion` answers: raised when a caller must know of a change. Functions,
+ * error codes and fields at the end of structs may be added without that.
+ */
+#define SHAPEOP_ABI_VERSION 1
+
+#if !defined(SHAPEOP_COMPAT_API_H)
+/**
+ * Why a call was refused. The numbers are frozen: 0 to 3 are those of libShapeOp 0.1.0, new ones are added from 16 up.
+ */
+typedef enum shapeop_err {
+    /**
+     * The call did what it says.
+     */
+    SO_SUCCESS = 0,
+    /**
+     * The constraint type does not exist, or cannot be edited.
+     */
+    SO_INVALID_CONSTRAINT_TYPE = 1,
+    /**
+     * A count (of indices, scalars, points) does not fit.
+     */
+    SO_INVALID_ARGUMENT_LENGTH = 2,
+    /**
+     * The id is no constraint of that type.
+     */
+    SO_UNMATCHING_CONSTRAINT_ID = 3,
+    /**
+     * A number is outside its domain, or not finite.
+     */
+    SO_INVALID_VALUE = 16,
+    /**
+     * A point index is out of range.
+     */
+    SO_INDEX_OUT_OF_RANGE = 17,
+    /**
+     * The id is no force of that kind.
+     */
+    SO_UNMATCHING_FORCE_ID = 18,
+    /**
+     * The solver was not initialised.
+     */
+    SO_NOT_INITIALISED = 19,
+    /**
+     * A force acts along a motion that no constraint resists.
+     */
+    SO_UNBOUNDED = 20,
+    /**
+     * Another call is using the solver.
+     */
+    SO_BUSY = 21,
+    /**
+     * The handle is null, was deleted, or never was a solver's.
+     */
+    SO_INVALID_HANDLE = 22,
+    /**
+     * A required pointer is null.
+     */
+    SO_NULL_POINTER = 23,
+    /**
+     * A file or text could not be read as what it claims to be.
+     */
+    SO_INVALID_INPUT = 24,
+    /**
+     * The problem is too large for this machine or for the numbers of this ABI.
+     */
+    SO_TOO_LARGE = 25,
+    /**
+     * An error inside the library: please report it.
+     */
+    SO_INTERNAL = 26,
+} shapeop_err;
+#endif
+
+/**
+ * What a type promises of its projection.
+ */
+typedef enum shapeop_projection {
+    /**
+     * The nearest feasible configuration: plain iterations never raise the energy.
+     */
+    SO_PROJECTION_NEAREST = 0,
+    /**
+     * A feasible configuration, not always the nearest.
+     */
+    SO_PROJECTION_FEASIBLE = 1,
+    /**
+     * A step towards a feasible configuration.
+     */
+    SO_PROJECTION_APPROXIMATE = 2,
+} shapeop_projection;
+
+/**
+ * Why a solve ended.
+ */
+typedef enum shapeop_outcome {
+    /**
+     * The largest move fell below the tolerance.
+     */
+    SO_OUTCOME_CONVERGED = 0,
+    /**
+     * The iterations were used up.
+     */
+    SO_OUTCOME_ITERATION_LIMIT = 1,
+    /**
+     * The time was used up.
+     */
+    SO_OUTCOME_TIME_BUDGET = 2,
+    /**
+     * The callback said so.
+     */
+    SO_OUTCOME_CANCELLED = 3,
+    /**
+     * Neither the energy nor the largest move fell any more.
+     */
+    SO_OUTCOME_STALLED = 4,
+    /**
+     * A force acts along a motion that no constraint resists, and the points did not move. `shapeop_lastError` says
+     * which.
+     */
+    SO_OUTCOME_UNBOUNDED = 5,
+} shapeop_outcome;
+
+#if !defined(SHAPEOP_COMPAT_API_H)
+/**
+ * A solver. What points to it is no address but a small integer, a handle.
+ */
+typedef struct ShapeOpSolver ShapeOpSolver;
+#endif
+
+/**
+ * A constraint type. The texts are valid as long as the library is loaded.
+ */
+typedef struct shapeop_constraint_type {
+    /**
+     * In: `sizeof(shapeop_constraint_type)`.
+     */
+    unsigned int struct_size;
+    /**
+     * The least number of point indices.
+     */
+    int least_indices;
+    /**
+     * The greatest number of point indices; -1: any number.
+     */
+    int greatest_indices;
+    /**
+     * The number of scalars of an edit; 0: it cannot be edited; -1: shapes, any positive multiple of 3 times the
+     * number of indices (x y z of each point of each shape).
+     */
+    int scalar_count;
+    /**
+     * The number of names for indices; the last name stands for all indices that follow.
+     */
+    int index_name_count;
+    /**
+     * What the projection promises.
+     */
+    enum shapeop_projection projection;
+    /**
+     * 1 if it sees its points only relative to their mean, so that alone it leaves translations free; else 0.
+     */
+    int is_centred;
+    /**
+     * The power of the model's scale with which its energy grows: scaling a model changes the balance of its weights.
+     */
+    int energy_scale_power;
+    /**
+     * The name in `shapeop_addConstraint`.
+     */
+    const char *name;
+    /**
+     * One line for people.
+     */
+    const char *help;
+    /**
+     * The unit of its violation, such as "model units" or "rad".
+     */
+    const char *violation_unit;
+    /**
+     * Another type's name that `shapeop_editConstraint` takes for it too, or null.
+     */
+    const char *edited_as;
+} shapeop_constraint_type;
+
+/**
+ * One scalar of a constraint type. The text is valid as long as the library is loaded.
+ */
+typedef struct shapeop_constraint_scalar {
+    /**
+     * In: `sizeof(shapeop_constraint_scalar)`.
+     */
+    unsigned int struct_size;
+    /**
+     * 1 if there is a default; 0 where the points at creation decide.
+     */
+    int has_default;
+    /**
+     * The default, or 0.
+     */
+    double default_value;
+    /**
+     * Its name, ending in its unit unless it is in model units or has none.
+     */
+    const char *name;
+} shapeop_constraint_scalar;
+
+/**
+ * When to stop. Start from `shapeop_defaultSolveOptions`.
+ */
+typedef struct shapeop_solve_options {
+    /**
+     * In: `sizeof(shapeop_solve_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Iterations at most; in dynamic mode within the one time step that a call makes. Default 1000.
+     */
+    unsigned int max_iterations;
+    /**
+     * Stop when the largest move of a point in an iteration, relative to the bounding-box diagonal, is below this; 0
+     * never stops that way. Finite, at least 0. Default 1e-6.
+     */
+    double tolerance;
+    /**
+     * Stop after so many seconds, looked at once per iteration; 0, the default: no limit. Finite, at least 0.
+     */
+    double time_budget_seconds;
+} shapeop_solve_options;
+
+/**
+ * What a progress callback is told after every iteration.
+ */
+typedef struct shapeop_progress {
+    /**
+     * `sizeof(shapeop_progress)` in the library; fields may be added at the end.
+     */
+    unsigned int struct_size;
+    /**
+     * Iterations made so far, from 1.
+     */
+    unsigned int iteration;
+    /**
+     * The energy at the current points.
+     */
+    double energy;
+    /**
+     * The largest move of a point in this iteration, relative to the bounding-box diagonal.
+     */
+    double largest_move;
+} shapeop_progress;
+
+/**
+ * Called after every iteration, on the thread that called `shapeop_solveUntil`. Returns 0 to go on; anything else ends
+ * the solve, and what was reached is kept. It must return: no exception, no `longjmp`.
+ */
+typedef int (*shapeop_progress_callback)(const struct shapeop_progress *progress, void *user);
+
+/**
+ * What a solve found.
+ */
+typedef struct shapeop_solve_report {
+    /**
+     * In: `sizeof(shapeop_solve_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Why it ended.
+     */
+    enum shapeop_outcome outcome;
+    /**
+     * Iterations made.
+     */
+    unsigned int iterations;
+    /**
+     * Points that no constraint of a weight above 0 holds.
+     */
+    unsigned int unconstrained_count;
+    /**
+     * The energy at the points that the iterations started from.
+     */
+    double energy_before;
+    /**
+     * The energy at the points that were reached.
+     */
+    double energy_after;
+    /**
+     * The largest move of a point in the last iteration, relative to the bounding-box diagonal.
+     */
+    double largest_move;
+    /**
+     * Seconds spent on ordering and symbolic analysis when the system in use was made.
+     */
+    double analysis_seconds;
+    /**
+     * Seconds spent on the factorisation when the system in use was made.
+     */
+    double factorisation_seconds;
+    /**
+     * Seconds spent on projections in this call.
+     */
+    double local_seconds;
+    /**
+     * Seconds spent on right-hand sides and linear solves in this call.
+     */
+    double global_seconds;
+} shapeop_solve_report;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * The version of the library, such as `0.1.0`. Valid as long as the library is loaded.
+ */
+SHAPEOP_API const char *shapeop_version(void);
+
+/**
+ * `SHAPEOP_ABI_VERSION` of the library, to be compared with the header's by a program that loads it.
+ */
+SHAPEOP_API int shapeop_abiVersion(void);
+
+/**
+ * Why the last call on `op` was refused, in words: the argument, what was expected, what was found. Empty if it
+ * succeeded: every call but this, `shapeop_version`, `shapeop_abiVersion`, `shapeop_errorText` and `shapeop_delete` of
+ * null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread
+ * only, and the success of another thread's call does not hide it. If `op` is no solver, the text is about the calling
+ * thread's last call of all.
+ *
+ * The text is the calling thread's own copy, valid until that thread's next call of this function.
+ */
+SHAPEOP_API const char *shapeop_lastError(struct ShapeOpSolver *op);
+
+/**
+ * What an error code means, in words; for a number that is none, it says so. Valid as long as the library is loaded.
+ */
+SHAPEOP_API const char *shapeop_errorText(int error);
+
+/**
+ * Creates a solver without points. Null if 65536 solvers exist. Delete it with `shapeop_delete`.
+ */
+SHAPEOP_API struct ShapeOpSolver *shapeop_create(void);
+
+/**
+ * Deletes a solver and all it holds. Null does nothing; a busy solver is left alone, as is whatever is no solver.
+ */
+SHAPEOP_API void shapeop_delete(struct ShapeOpSolver *op);
+
+/**
+ * Prepares for static solving from the current points: masses, damping and time step are 1, velocities start at zero.
+ * May be called again at any time. Returns 0, or 1 if the system cannot be factorised (numbers too large).
+ */
+SHAPEOP_API int shapeop_init(struct ShapeOpSolver *op);
+
+/**
+ * Prepares for dynamic solving from the current points with zero velocities. `masses` is that of every point, above 0;
+ * `damping` the factor on velocities after each step, at least 0; `timestep` is above 0. Returns 0, or 1 if one of
+ * them is not so or the system cannot be factorised; the solver is then as before.
+ */
+SHAPEOP_API int shapeop_initDynamic(struct ShapeOpSolver *op, double masses, double damping, double timestep);
+
+/**
+ * Static: so many local/global iterations from the current points. Dynamic: one time step with so many iterations.
+ * Changes since the last call, of constraints too, take effect. Returns 0, or 1 with the points as before if the
+ * solver was not initialised, if a force acts along a motion that no constraint resists, or if the numbers became too
+ * large.
+ */
+SHAPEOP_API int shapeop_solve(struct ShapeOpSolver *op, unsigned int iteration);
+
+/**
+ * Changes the time step of the following steps, but not the inertia, which keeps the step of `shapeop_initDynamic`.
+ * Before initialisation it has no effect. A step that is not finite and above 0 changes nothing.
+ */
+SHAPEOP_API void shapeop_setTimeStep(struct ShapeOpSolver *op, double timestep);
+
+/**
+ * Changes the damping of the following steps. Before initialisation it has no effect. A damping that is not finite and
+ * at least 0 changes nothing.
+ */
+SHAPEOP_API void shapeop_setDamping(struct ShapeOpSolver *op, double damping);
+
+/**
+ * Sets the number of threads for large problems, at most 1024; 0, the default: as many as the machine has. The results
+ * are the same bits for any number.
+ */
+SHAPEOP_API enum shapeop_err shapeop_setThreadCount(struct ShapeOpSolver *op, int nb_threads);
+
+/**
+ * Replaces the positions: `points` holds `x0 y0 z0 x1 ...` in model units. Rest states, targets and velocities stay.
+ * Their number may change as long as no constraint or force refers beyond it; added points start at rest. Refused,
+ * with nothing changed, if it may not, or if a coordinate is not finite.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles.
+ */
+SHAPEOP_API void shapeop_setPoints(struct ShapeOpSolver *op, double *points, int nb_points);
+
+/**
+ * Copies the positions to `points` as `x0 y0 z0 x1 ...` in model units. `nb_points` must be the solver's number of
+ * points; otherwise nothing is written. From inside the progress callback: the current iterate.
+ *
+ * # Safety
+ * `points` is null or writable for `3 * nb_points` doubles.
+ */
+SHAPEOP_API void shapeop_getPoints(struct ShapeOpSolver *op, double *points, int nb_points);
+
+/**
+ * The number of points, or -1.
+ */
+SHAPEOP_API int shapeop_pointCount(struct ShapeOpSolver *op);
+
+/**
+ * The number of points that no constraint of a weight above 0 holds, or -1. In static mode they keep their place.
+ */
+SHAPEOP_API int shapeop_unconstrainedCount(struct ShapeOpSolver *op);
+
+/**
+ * Adds a constraint with its type's default scalars, at rest where the points are now. `ids` are point indices.
+ * Returns its id (they count up from 0 and are never reused), or -1 if the type is unknown, their number does not fit
+ * the type, one is out of range, or `weight` is negative or not finite.
+ *
+ * # Safety
+ * `constraint_type` is null or ends with a zero; `ids` is null or readable for `nb_ids` ints.
+ */
+SHAPEOP_API
+int shapeop_addConstraint(struct ShapeOpSolver *op,
+                          const char *constraint_type,
+                          int *ids,
+                          int nb_ids,
+                          double weight);
+
+/**
+ * Adds many constraints of one type, all or none, at rest where the points are now.
+ *
+ * - `ids`: the point indices of all constraints behind each other, `nb_ids` in all.
+ * - `counts`: the number of indices of each. `nb_counts` 1: the same for all, so there are `nb_ids / counts[0]`
+ *   constraints; otherwise one per constraint.
+ * - `weights`: `nb_weights` 1: the same for all; otherwise one per constraint.
+ * - `scalars`: scalar sets behind each other, `nb_scalars` numbers in all. `nb_scalar_sets` 0: the defaults of the
+ *   type; 1: one set for all; otherwise one per constraint. For types that take shapes every set has the same number
+ *   of shapes, each of its own constraint's number of points.
+ * - `flags`: 0. Unknown bits are refused.
+ * - `constraint_ids`: null, or where the ids go, one int per constraint.
+ *
+ * # Safety
+ * `constraint_type` is null or ends with a zero; each array is null or readable for its number of values;
+ * `constraint_ids` is null or writable for one int per constraint.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_addConstraints(struct ShapeOpSolver *op,
+                                        const char *constraint_type,
+                                        const int *ids,
+                                        int nb_ids,
+                                        const int *counts,
+                                        int nb_counts,
+                                        const double *weights,
+                                        int nb_weights,
+                                        const double *scalars,
+                                        int nb_scalars,
+                                        int nb_scalar_sets,
+                                        unsigned int flags,
+                                        int *constraint_ids);
+
+/**
+ * Replaces the scalars of a constraint, of the type that it was added with; "Similarity" and "Rigid" may edit each
+ * other's. The next solve uses them. Scalars already in force change nothing and cost nothing.
+ *
+ * Decided in this order: the type cannot be edited (1); the id is no constraint of that type (3); the number of
+ * scalars does not fit (2); a scalar is outside its domain or not finite (16).
+ *
+ * # Safety
+ * `constraint_type` is null or ends with a zero; `scalars` is null or readable for `nb_scl` doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_editConstraint(struct ShapeOpSolver *op,
+                                        const char *constraint_type,
+                                        int constraint_id,
+                                        const double *scalars,
+                                        int nb_scl);
+
+/**
+ * Sets the weight of a constraint: finite, at least 0. The next solve uses it.
+ */
+SHAPEOP_API enum shapeop_err shapeop_setWeight(struct ShapeOpSolver *op, int constraint_id, double weight);
+
+/**
+ * Removes a constraint. Its id is never given out again; arrays with one entry per constraint keep its place.
+ */
+SHAPEOP_API enum shapeop_err shapeop_removeConstraint(struct ShapeOpSolver *op, int constraint_id);
+
+/**
+ * The number of constraint ids given out, those of removed ones included, or -1. It is the length of every array with
+ * one entry per constraint.
+ */
+SHAPEOP_API int shapeop_constraintCount(struct ShapeOpSolver *op);
+
+/**
+ * 1 if `constraint_id` is a constraint, 0 if it was removed or never given out, -1 if the call is refused.
+ */
+SHAPEOP_API int shapeop_isConstraint(struct ShapeOpSolver *op, int constraint_id);
+
+/**
+ * 1 if the rest state of the constraint spans too little to say what it asks for (a zero-length edge, a flat
+ * triangle); it then asks for less or for nothing, as its type's documentation says. 0 if not; -1 if the call is
+ * refused.
+ */
+SHAPEOP_API int shapeop_isDegenerate(struct ShapeOpSolver *op, int constraint_id);
+
+/**
+ * Adds a force on every point; `force` is its 3 components. Returns the force's id, or -1 if it is not finite.
+ *
+ * # Safety
+ * `force` is null or readable for 3 doubles.
+ */
+SHAPEOP_API int shapeop_addGravityForce(struct ShapeOpSolver *op, double *force);
+
+/**
+ * Adds a force on the point `id`; `force` is its 3 components. Returns the force's id, or -1 if the point is out of
+ * range or the force is not finite.
+ *
+ * # Safety
+ * `force` is null or readable for 3 doubles.
+ */
+SHAPEOP_API int shapeop_addVertexForce(struct ShapeOpSolver *op, double *force, int id);
+
+/**
+ * Replaces the vertex force `force_id` by `force` on the point `id`. Refused, with nothing changed, if it is no vertex
+ * force, the point is out of range or the force is not finite.
+ *
+ * # Safety
+ * `force` is null or readable for 3 doubles.
+ */
+SHAPEOP_API void shapeop_editVertexForce(struct ShapeOpSolver *op, int force_id, double *force, int id);
+
+/**
+ * Removes a force. Its id is never given out again.
+ */
+SHAPEOP_API enum shapeop_err shapeop_removeForce(struct ShapeOpSolver *op, int force_id);
+
+/**
+ * The number of force ids given out, those of removed ones included, or -1.
+ */
+SHAPEOP_API int shapeop_forceCount(struct ShapeOpSolver *op);
+
+/**
+ * 1 if `force_id` is a force, 0 if it was removed or never given out, -1 if the call is refused.
+ */
+SHAPEOP_API int shapeop_isForce(struct ShapeOpSolver *op, int force_id);
+
+/**
+ * The number of constraint types, or -1. Their indices count from 0 and stay: new types are added behind them.
+ */
+SHAPEOP_API int shapeop_constraintTypeCount(void);
+
+/**
+ * Describes the constraint type `index` in `out`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `out` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_constraintType(int index, struct shapeop_constraint_type *out);
+
+/**
+ * Describes the scalar `scalar_index` of the constraint type `index` in `out`, whose `struct_size` must be set. Types
+ * that take shapes have no scalars to describe.
+ *
+ * # Safety
+ * `out` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_constraintScalar(int index,
+                                          int scalar_index,
+                                          struct shapeop_constraint_scalar *out);
+
+/**
+ * What the point index `index_position` of a constraint of the type `index` means, such as "apex"; null if there is no
+ * such type or its `index_name_count` is not above `index_position`. Valid as long as the library is loaded.
+ */
+SHAPEOP_API const char *shapeop_constraintIndexName(int index, int index_position);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_defaultSolveOptions(struct shapeop_solve_options *options);
+
+/**
+ * Iterates until `options` (null: the defaults) say to stop; in dynamic mode within one time step. `progress` may be
+ * null; it is called with `user` after every iteration. While it runs, reading calls on `op` from it answer with the
+ * current iterate, and all other calls are refused as busy. `report` is null, or its `struct_size` is set; it is
+ * written on success.
+ *
+ * A force along a motion that no constraint resists is the outcome `SO_OUTCOME_UNBOUNDED` of a successful call.
+ *
+ * # Safety
+ * `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many bytes.
+ * `progress` is null or a function of that signature. They do not overlap, and nobody changes them during the call.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_solveUntil(struct ShapeOpSolver *op,
+                                    const struct shapeop_solve_options *options,
+                                    shapeop_progress_callback progress,
+                                    void *user,
+                                    struct shapeop_solve_report *report);
+
+/**
+ * Writes the energy at the current points to `out`: half the sum of the weighted squared distances to the projections,
+ * in static mode minus the potential of the forces, in dynamic mode plus the inertia of the last step.
+ *
+ * # Safety
+ * `out` is null or writable for one double.
+ */
+SHAPEOP_API enum shapeop_err shapeop_energy(struct ShapeOpSolver *op, double *out);
+
+/**
+ * Writes the violation of every constraint id at the current points to `out`, each in its type's unit; 0 for removed
+ * ones. `nb` must be `shapeop_constraintCount`; otherwise nothing is written.
+ *
+ * # Safety
+ * `out` is null or writable for `nb` doubles.
+ */
+SHAPEOP_API enum shapeop_err shapeop_getViolations(struct ShapeOpSolver *op, double *out, int nb);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* SHAPEOP_H */

@@ -1,0 +1,101 @@
+//! From pointers and counts to slices, texts and ids: each checked for what can be checked, with the argument's name.
+
+use std::borrow::Cow;
+use std::ffi::{CStr, c_char, c_int};
+use std::{ptr, slice};
+
+use glam::DVec3;
+
+use crate::constraints::ConstraintId;
+use crate::error::{Error, Result, Status};
+
+/// `count` as a length.
+pub(super) fn length(name: &str, count: c_int) -> Result<usize> {
+    let reason = || format!("expected a count of at least 0, found {count}");
+    usize::try_from(count).map_err(|_| Error::new(Status::InvalidArgumentLength, reason()).at(name))
+}
+
+/// The number of coordinates of `count` points.
+pub(super) fn xyz_length(name: &str, count: c_int) -> Result<usize> {
+    let reason = || Error::new(Status::TooLarge, format!("{count} points do not fit the memory")).at(name);
+    length(name, count)?.checked_mul(3).ok_or_else(reason)
+}
+
+/// Refuses a pointer that cannot lead to `length` values of `T`; any pointer leads to none.
+pub(super) fn check_pointer<T>(name: &str, data: *const T, length: usize) -> Result<()> {
+    if length == 0 {
+        return Ok(());
+    }
+    if data.is_null() {
+        return Err(Error::new(Status::NullPointer, "expected a pointer, found null").at(name));
+    }
+    if !data.is_aligned() {
+        let reason = format!("expected an address that is a multiple of {}, found {data:?}", align_of::<T>());
+        return Err(Error::new(Status::InvalidValue, reason).at(name));
+    }
+    if length.checked_mul(size_of::<T>()).is_none_or(|size| isize::try_from(size).is_err()) {
+        return Err(Error::new(Status::TooLarge, format!("{length} values do not fit the memory")).at(name));
+    }
+    Ok(())
+}
+
+/// `length` values at `data`.
+///
+/// # Safety
+/// `data` is null or readable for `length` values, which nobody writes during `'a`.
+pub(super) unsafe fn slice<'a, T>(name: &str, data: *const T, length: usize) -> Result<&'a [T]> {
+    check_pointer(name, data, length)?;
+    if length == 0 {
+        return Ok(&[]);
+    }
+    // SAFETY: not null, aligned, of a size that fits, and the caller vouches for the rest.
+    Ok(unsafe { slice::from_raw_parts(data, length) })
+}
+
+/// Copies `values` to `out`, which [`check_pointer`] passed for their number.
+///
+/// # Safety
+/// `out` is null or writable for `values.len()` values.
+pub(super) unsafe fn write<T: Copy>(out: *mut T, values: &[T]) {
+    if !out.is_null() {
+        // SAFETY: the caller vouches for `out`; `values` is memory of this library, so they do not overlap.
+        unsafe { ptr::copy_nonoverlapping(values.as_ptr(), out, values.len()) };
+    }
+}
+
+/// A text in UTF-8; what is not UTF-8 is replaced by U+FFFD, which occurs in no name.
+///
+/// # Safety
+/// `text` is null or leads to bytes that end with a zero and that nobody writes during `'a`.
+pub(super) unsafe fn text<'a>(name: &str, text: *const c_char) -> Result<Cow<'a, str>> {
+    check_pointer(name, text, 1)?;
+    // SAFETY: not null, and the caller vouches for the rest.
+    Ok(unsafe { CStr::from_ptr(text) }.to_string_lossy())
+}
+
+/// Three components.
+///
+/// # Safety
+/// `vector` is null or readable for 3 doubles.
+pub(super) unsafe fn vector(name: &str, vector: *const f64) -> Result<DVec3> {
+    // SAFETY: the caller vouches for 3 doubles, and they are copied before this returns.
+    unsafe { slice(name, vector, 3) }.map(DVec3::from_slice)
+}
+
+/// A constraint's id, which only the solver can check further.
+pub(super) fn constraint_id(id: c_int) -> Result<ConstraintId> {
+    let reason = || format!("expected an id of at least 0, found {id}");
+    usize::try_from(id).map_err(|_| Error::new(Status::UnmatchingConstraintId, reason()).at("constraint id"))
+}
+
+/// A force's id, which only the solver can check further.
+pub(super) fn force_id(id: c_int) -> Result<usize> {
+    let reason = || format!("expected an id of at least 0, found {id}");
+    usize::try_from(id).map_err(|_| Error::new(Status::UnmatchingForceId, reason()).at("force id"))
+}
+
+/// A point's index, which only the solver can check further.
+pub(super) fn point_index(name: &str, index: c_int, point_count: usize) -> Result<u32> {
+    let reason = || format!("{index} is out of range for {point_count} points");
+    u32::try_from(index).map_err(|_| Error::new(Status::IndexOutOfRange, reason()).at(name))
+}

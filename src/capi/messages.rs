@@ -1,0 +1,77 @@
+//! What the last call said, for `shapeop_lastError`.
+//!
+//! Every call leaves its message, an empty one if it succeeded, with its thread, and with its solver if it got hold of
+//! it. So a caller of a function without a return value learns from an empty text that it was carried out; a thread
+//! reads what another thread's call on a solver left; and a refusal as busy stays with the thread that was refused.
+
+use std::cell::RefCell;
+use std::ffi::{CStr, CString, c_char};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::handles::{self, Handle};
+use crate::error::Error;
+
+/// The message of a call; empty if it succeeded.
+#[derive(Clone, Default)]
+pub(super) struct Message {
+    /// Later calls have greater numbers.
+    order: u64,
+    text: String,
+}
+
+impl Message {
+    fn new(error: Option<&Error>) -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(1);
+        let text = error.map(Error::to_string).unwrap_or_default();
+        Self { order: NEXT.fetch_add(1, Ordering::Relaxed), text }
+    }
+}
+
+thread_local! {
+    /// The last call of this thread: the handle that it named, and its message.
+    static LAST: RefCell<(Handle, Message)> = RefCell::new((Handle::NONE, Message::default()));
+    /// The text that `shapeop_lastError` handed out.
+    static SHOWN: RefCell<CString> = RefCell::default();
+}
+
+/// Keeps the message of a call with its solver.
+pub(super) fn keep(of_solver: &Mutex<Message>, error: Option<&Error>) {
+    *of_solver.lock().unwrap_or_else(PoisonError::into_inner) = Message::new(error);
+}
+
+/// Keeps the message of a call on `handle` with this thread.
+pub(super) fn keep_for_thread(handle: Handle, error: Option<&Error>) {
+    let message = Message::new(error);
+    // A thread that is ending keeps nothing.
+    let _ = LAST.try_with(|last| *last.borrow_mut() = (handle, message));
+}
+
+/// Replaces the empty message of a successful call on `handle` by what its caller should know.
+pub(super) fn keep_note(handle: Handle, note: &Error) {
+    if let Ok(slot) = handles::find(handle) {
+        keep(&slot.message, Some(note));
+    }
+    keep_for_thread(handle, Some(note));
+}
+
+/// Why the last call on `handle` was refused; this thread's last call if `handle` names no solver. Another thread's
+/// success does not hide a refusal of this one.
+fn last(handle: Handle) -> String {
+    let of_thread = LAST.try_with(|last| last.borrow().clone());
+    let (own_handle, of_thread) = of_thread.unwrap_or((Handle::NONE, Message::default()));
+    let Ok(slot) = handles::find(handle) else { return of_thread.text };
+    let of_solver = slot.message.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_own_newer = of_solver.text.is_empty() || of_thread.order > of_solver.order;
+    if own_handle == handle && is_own_newer { of_thread.text } else { of_solver.text.clone() }
+}
+
+/// [`last`] as C text that stays valid until this thread's next call.
+pub(super) fn show_last(handle: Handle) -> *const c_char {
+    let text = CString::new(last(handle).replace('\0', " ")).unwrap_or_default();
+    let show = |shown: &RefCell<CString>| {
+        *shown.borrow_mut() = text;
+        shown.borrow().as_ptr()
+    };
+    SHOWN.try_with(show).unwrap_or(CStr::as_ptr(c""))
+}

@@ -1,0 +1,141 @@
+/* A C program that uses the whole of shapeop.h. Ends with 0 if all is well. */
+#include "shapeop.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int failures = 0;
+
+static void check(int is_true, const char *what) {
+    if (!is_true) {
+        fprintf(stderr, "wrong: %s\n", what);
+        failures++;
+    }
+}
+
+static void list_types(void) {
+    int i, j, count = shapeop_constraintTypeCount();
+    check(count >= 7, "constraint types");
+    for (i = 0; i < count; ++i) {
+        shapeop_constraint_type type;
+        memset(&type, 0, sizeof type);
+        type.struct_size = sizeof type;
+        check(shapeop_constraintType(i, &type) == SO_SUCCESS, "constraintType");
+        printf("%s (%s):", type.name, type.help);
+        for (j = 0; j < type.index_name_count; ++j) {
+            printf(" %s", shapeop_constraintIndexName(i, j));
+        }
+        for (j = 0; j < type.scalar_count; ++j) {
+            shapeop_constraint_scalar scalar;
+            memset(&scalar, 0, sizeof scalar);
+            scalar.struct_size = sizeof scalar;
+            check(shapeop_constraintScalar(i, j, &scalar) == SO_SUCCESS, "constraintScalar");
+            printf(" %s=%g", scalar.name, scalar.default_value);
+        }
+        printf(" [%s]\n", type.violation_unit);
+    }
+}
+
+enum { SIDE = 20, POINTS = SIDE * SIDE, QUADS = (SIDE - 1) * (SIDE - 1) };
+
+typedef struct Watch {
+    ShapeOpSolver *solver;
+    double last_energy;
+    int calls;
+} Watch;
+
+static int watch(const shapeop_progress *progress, void *user) {
+    Watch *seen = user;
+    double energy = -1, points[3 * POINTS];
+    check(progress->energy <= seen->last_energy * (1 + 1e-12), "the energy never rises");
+    check(shapeop_energy(seen->solver, &energy) == SO_SUCCESS, "energy in the callback");
+    check(fabs(energy - progress->energy) <= 1e-9 * energy, "it is that of the current points");
+    shapeop_getPoints(seen->solver, points, POINTS);
+    check(isfinite(points[0]), "points in the callback");
+    check(shapeop_solve(seen->solver, 1) == 1, "busy");
+    check(strstr(shapeop_lastError(seen->solver), "busy") != NULL, "and it says so");
+    seen->last_energy = progress->energy;
+    seen->calls++;
+    return seen->calls == 30;
+}
+
+/* A bumpy sheet of quads: planar faces, near to where it was. */
+static void planarise(void) {
+    static double points[3 * POINTS];
+    static int quads[4 * QUADS], each[POINTS], ids[QUADS];
+    const int four = 4, one = 1;
+    const double heavy = 1.0, light = 0.01;
+    double before, after, violations[QUADS + POINTS];
+    int i, n = 0;
+    shapeop_solve_options options;
+    shapeop_solve_report report;
+    Watch seen;
+    ShapeOpSolver *solver = shapeop_create();
+    for (i = 0; i < POINTS; ++i) {
+        points[3 * i] = i % SIDE;
+        points[3 * i + 1] = i / SIDE;
+        points[3 * i + 2] = sin(0.7 * (i % SIDE)) * cos(0.5 * (i / SIDE));
+        each[i] = i;
+        if (i % SIDE < SIDE - 1 && i / SIDE < SIDE - 1) {
+            quads[n++] = i;
+            quads[n++] = i + 1;
+            quads[n++] = i + SIDE + 1;
+            quads[n++] = i + SIDE;
+        }
+    }
+    shapeop_setPoints(solver, points, POINTS);
+    check(shapeop_addConstraints(solver, "Plane", quads, n, &four, 1, &heavy, 1, NULL, 0, 0, 0, ids) == SO_SUCCESS,
+          "planes");
+    check(ids[0] == 0 && ids[QUADS - 1] == QUADS - 1, "their ids");
+    check(shapeop_addConstraints(solver, "Closeness", each, POINTS, &one, 1, &light, 1, NULL, 0, 0, 0, NULL) ==
+              SO_SUCCESS,
+          "closeness");
+    check(shapeop_constraintCount(solver) == QUADS + POINTS, "constraintCount");
+    check(shapeop_energy(solver, &before) == SO_SUCCESS, "energy before");
+    check(shapeop_init(solver) == 0, "init");
+
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    check(shapeop_defaultSolveOptions(&options) == SO_SUCCESS, "default options");
+    options.max_iterations = 500;
+    memset(&report, 0, sizeof report);
+    report.struct_size = sizeof report;
+    seen.solver = solver;
+    seen.last_energy = before;
+    seen.calls = 0;
+    check(shapeop_solveUntil(solver, &options, watch, &seen, &report) == SO_SUCCESS, "solveUntil");
+    check(report.outcome == SO_OUTCOME_CANCELLED && report.iterations == 30 && seen.calls == 30, "cancelled at 30");
+    check(fabs(report.energy_before - before) <= 1e-9 * before, "energy before, reported");
+    check(shapeop_energy(solver, &after) == SO_SUCCESS, "energy after");
+    check(fabs(report.energy_after - after) <= 1e-9 * after, "energy after, reported");
+    check(after < 0.5 * before, "it fell");
+    check(shapeop_getViolations(solver, violations, QUADS + POINTS) == SO_SUCCESS, "violations");
+    check(shapeop_getViolations(solver, violations, 1) == SO_INVALID_ARGUMENT_LENGTH, "violations of one");
+    printf("energy %g -> %g, first violation %g\n", before, after, violations[0]);
+    shapeop_delete(solver);
+}
+
+static void mistakes(void) {
+    ShapeOpSolver *solver = shapeop_create();
+    double number = 7;
+    int id = 3;
+    check(shapeop_solve(solver, 1) == 1, "solve before init");
+    printf("%s\n", shapeop_lastError(solver));
+    check(shapeop_addConstraint(solver, "Plain", &id, 1, 1.0) == -1, "unknown type");
+    printf("%s\n", shapeop_lastError(solver));
+    check(strstr(shapeop_lastError(solver), "Closeness") != NULL, "it lists the names");
+    shapeop_delete(solver);
+    check(shapeop_energy(solver, &number) == SO_INVALID_HANDLE && number == 7, "a deleted solver");
+    check(strcmp(shapeop_errorText(SO_SUCCESS), "success") == 0, "errorText");
+    check(shapeop_abiVersion() == SHAPEOP_ABI_VERSION, "abiVersion");
+}
+
+int main(void) {
+    printf("shapeop %s\n", shapeop_version());
+    list_types();
+    planarise();
+    mistakes();
+    return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

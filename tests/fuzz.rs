@@ -1,0 +1,616 @@
+//! Random sequences of C calls with random arguments: valid, stale, null, huge, negative, not finite. None crashes, no
+//! call hands out a number that is not finite, and a refused one changes nothing and says why.
+//!
+//! `SHAPEOP_FUZZ_SEQUENCES` sets the number of sequences, `SHAPEOP_FUZZ_SEED` the seed. A sequence that ends the
+//! process is found by running the printed seed again with `SHAPEOP_FUZZ_TRACE=1`, which prints every call before it is
+//! made.
+
+use std::ffi::{CString, c_int, c_void};
+use std::ptr;
+
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
+use shapeop::capi::shapeop_err::*;
+use shapeop::capi::*;
+
+/// Sequences of the ordinary run: a few seconds.
+const SEQUENCES: u32 = 10_000;
+
+/// Calls of a sequence at most.
+const LONGEST_SEQUENCE: usize = 60;
+
+/// Points of a solver at most.
+const MOST_POINTS: usize = 12;
+
+/// Which handle a call names.
+#[derive(Clone, Copy, Debug)]
+enum Op {
+    /// One of the sequence's own solvers, deleted ones included.
+    Own(usize),
+    /// Any number.
+    Value(u64),
+}
+
+/// The pointer and count of an array argument.
+#[derive(Clone, Debug)]
+enum Array<T> {
+    /// The values and their number.
+    Right(Vec<T>),
+    /// A null pointer and any count.
+    Null(c_int),
+    /// A pointer to values and a negative count.
+    Negative(Vec<T>, c_int),
+}
+
+impl<T> Array<T> {
+    fn data(&self) -> *const T {
+        match self {
+            Self::Right(values) | Self::Negative(values, _) => values.as_ptr(),
+            Self::Null(_) => ptr::null(),
+        }
+    }
+
+    fn count(&self) -> c_int {
+        match self {
+            Self::Right(values) => values.len() as c_int,
+            Self::Null(count) | Self::Negative(_, count) => *count,
+        }
+    }
+}
+
+#[derive(Clone, Debug)]
+struct Options {
+    struct_size: u32,
+    max_iterations: u32,
+    tolerance: f64,
+    time_budget_seconds: f64,
+}
+
+#[derive(Clone, Debug)]
+enum Call {
+    Create,
+    Delete(Op),
+    Init(Op),
+    InitDynamic(Op, f64, f64, f64),
+    Solve(Op, u32),
+    SetPoints(Op, Array<f64>),
+    GetPoints(Op, bool, c_int),
+    SetTimeStep(Op, f64),
+    SetDamping(Op, f64),
+    SetThreadCount(Op, c_int),
+    AddConstraint(Op, Option<CString>, Array<c_int>, f64),
+    /// Type, ids, counts, weights, scalars, number of sets, flags, whether ids are wanted.
+    AddConstraints(Op, Option<CString>, Array<c_int>, Array<c_int>, Array<f64>, Array<f64>, c_int, u32, bool),
+    EditConstraint(Op, Option<CString>, c_int, Array<f64>),
+    /// Of the constraints that the solver was given, this one modulo their number, with as many scalars as it takes.
+    EditOwn(Op, usize, Vec<f64>),
+    SetWeight(Op, c_int, f64),
+    RemoveConstraint(Op, c_int),
+    IsConstraint(Op, c_int),
+    IsDegenerate(Op, c_int),
+    AddGravity(Op, Option<[f64; 3]>),
+    AddVertexForce(Op, Option<[f64; 3]>, c_int),
+    EditVertexForce(Op, c_int, Option<[f64; 3]>, c_int),
+    RemoveForce(Op, c_int),
+    SolveUntil(Op, Option<Options>, Option<u32>, Option<u32>),
+    Energy(Op, bool),
+    Violations(Op, bool, c_int),
+    ConstraintType(c_int, Option<u32>),
+    ConstraintScalar(c_int, c_int, Option<u32>),
+    ErrorText(c_int),
+}
+
+fn op() -> impl Strategy<Value = Op> {
+    prop_oneof![
+        20 => (0_usize..4).prop_map(Op::Own),
+        1 => prop_oneof![Just(0), Just(1), Just(u64::MAX), any::<u64>(), any::<u32>().prop_map(u64::from)]
+            .prop_map(Op::Value),
+    ]
+}
+
+/// Mostly reasonable numbers, and every kind that is not.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        30 => -3.0..3.0_f64,
+        10 => 0.0..2.0_f64,
+        5 => prop::sample::select(vec![0.0, -0.0, 1.0, 0.5, 2.0]),
+        2 => -1e9..1e9_f64,
+        1 => prop::sample::select(vec![
+            f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN, f64::MIN_POSITIVE, 5e-324, 1e-9, 1e9,
+            1e-160, 1e100, 1e154, -1e155, 1e200, 1e300, -1e308,
+        ]),
+        1 => any::<f64>(),
+    ]
+}
+
+fn integer() -> impl Strategy<Value = c_int> {
+    prop_oneof![
+        20 => 0..12_i32,
+        2 => prop::sample::select(vec![-1, i32::MIN, i32::MAX, 1 << 16, 1 << 30]),
+        1 => any::<i32>(),
+    ]
+}
+
+fn array<T: Clone + std::fmt::Debug + 'static>(
+    value: impl Strategy<Value = T> + 'static,
+    lengths: impl Into<prop::collection::SizeRange>,
+) -> impl Strategy<Value = Array<T>> {
+    let values = prop::collection::vec(value, lengths.into()).boxed();
+    prop_oneof![
+        30 => values.clone().prop_map(Array::Right),
+        1 => integer().prop_map(Array::Null),
+        1 => (values, i32::MIN..0).prop_map(|(values, count)| Array::Negative(values, count)),
+    ]
+}
+
+fn type_name() -> impl Strategy<Value = Option<CString>> {
+    let names: Vec<CString> = shapeop::constraints::types().map(|info| CString::new(info.name).unwrap()).collect();
+    prop_oneof![
+        30 => prop::sample::select(names).prop_map(Some),
+        1 => prop::collection::vec(1..=255_u8, 0..20).prop_map(|bytes| Some(CString::new(bytes).unwrap())),
+        1 => Just(None),
+    ]
+}
+
+fn force() -> impl Strategy<Value = Option<[f64; 3]>> {
+    prop_oneof![20 => [number(), number(), number()].prop_map(Some), 1 => Just(None)]
+}
+
+/// Points of which most are reasonable; every other set is without a number that would be refused.
+fn points() -> impl Strategy<Value = Array<f64>> {
+    let flat = (1..=MOST_POINTS, prop::collection::vec(-2.0..2.0_f64, 3 * MOST_POINTS));
+    prop_oneof![
+        3 => flat.prop_map(|(count, values)| Array::Right(values[..3 * count].to_vec())),
+        1 => array(number(), 0..=3 * MOST_POINTS),
+        1 => (1..=MOST_POINTS, number(), number())
+            .prop_map(|(count, at, step)| Array::Right((0..3 * count).map(|i| at + step * (i / 3) as f64).collect())),
+    ]
+}
+
+/// A type with as many indices as it takes.
+fn fitting() -> impl Strategy<Value = (Option<CString>, Array<c_int>)> {
+    let types: Vec<_> = shapeop::constraints::types().collect();
+    (prop::sample::select(types), 0..3_usize, prop::collection::vec(0..MOST_POINTS as c_int, 8)).prop_map(
+        |(info, more, indices)| {
+            let count = (info.least_indices + more).min(info.greatest_indices.unwrap_or(usize::MAX));
+            (Some(CString::new(info.name).unwrap()), Array::Right(indices[..count].to_vec()))
+        },
+    )
+}
+
+/// Scalars of which most are in the domain of most types.
+fn scalars() -> impl Strategy<Value = Vec<f64>> {
+    let rising = (0.1..1.5_f64, 0.0..1.0_f64, 0.0..1.0_f64).prop_map(|(a, b, c)| [a, b, b + c].repeat(8));
+    prop_oneof![
+        3 => rising,
+        2 => prop::collection::vec(-2.0..2.0_f64, 24),
+        1 => prop::collection::vec(number(), 24),
+    ]
+}
+
+/// Index lists of any length.
+fn indices() -> impl Strategy<Value = Array<c_int>> {
+    prop_oneof![6 => array(0..MOST_POINTS as c_int, 0..7), 1 => array(integer(), 0..7)]
+}
+
+fn struct_size(right: usize) -> impl Strategy<Value = u32> {
+    prop_oneof![8 => Just(right as u32), 1 => 0..=right as u32, 1 => any::<u32>(), 1 => right as u32..4100]
+}
+
+fn options() -> impl Strategy<Value = Options> {
+    (struct_size(size_of::<shapeop_solve_options>()), 0..30_u32, number(), number()).prop_map(
+        |(struct_size, max_iterations, tolerance, time_budget_seconds)| Options {
+            struct_size,
+            max_iterations,
+            tolerance,
+            time_budget_seconds,
+        },
+    )
+}
+
+fn call() -> impl Strategy<Value = Call> {
+    let report = struct_size(size_of::<shapeop_solve_report>());
+    let named_type = struct_size(size_of::<shapeop_constraint_type>());
+    let scalar = struct_size(size_of::<shapeop_constraint_scalar>());
+    let changes = prop_oneof![
+        1 => Just(Call::Create),
+        1 => op().prop_map(Call::Delete),
+        8 => (op(), points()).prop_map(|(o, p)| Call::SetPoints(o, p)),
+        1 => (op(), number()).prop_map(|(o, x)| Call::SetTimeStep(o, x)),
+        1 => (op(), number()).prop_map(|(o, x)| Call::SetDamping(o, x)),
+        1 => (op(), prop_oneof![0..3, integer().prop_filter("few threads", |n| !(3..=1024).contains(n))])
+            .prop_map(|(o, n)| Call::SetThreadCount(o, n)),
+        14 => (op(), fitting(), 0.0..10.0_f64).prop_map(|(o, (t, i), w)| Call::AddConstraint(o, t, i, w)),
+        8 => (op(), 0..99_usize, scalars()).prop_map(|(o, pick, s)| Call::EditOwn(o, pick, s)),
+        4 => (op(), type_name(), indices(), number()).prop_map(|(o, t, i, w)| Call::AddConstraint(o, t, i, w)),
+        6 => ((op(), type_name(), indices(), array(integer(), 0..4)), array(number(), 0..4), array(number(), 0..9),
+              integer(), prop_oneof![9 => Just(0), 1 => any::<u32>()], any::<bool>())
+            .prop_map(|((o, t, i, c), w, s, n, f, wants)| Call::AddConstraints(o, t, i, c, w, s, n, f, wants)),
+        4 => (op(), type_name(), integer(), array(number(), 0..13))
+            .prop_map(|(o, t, id, s)| Call::EditConstraint(o, t, id, s)),
+        3 => (op(), integer(), number()).prop_map(|(o, id, w)| Call::SetWeight(o, id, w)),
+        3 => (op(), integer()).prop_map(|(o, id)| Call::RemoveConstraint(o, id)),
+        1 => (op(), force()).prop_map(|(o, f)| Call::AddGravity(o, f)),
+        2 => (op(), force(), integer()).prop_map(|(o, f, id)| Call::AddVertexForce(o, f, id)),
+        2 => (op(), integer(), force(), integer()).prop_map(|(o, f_id, f, id)| Call::EditVertexForce(o, f_id, f, id)),
+        2 => (op(), integer()).prop_map(|(o, id)| Call::RemoveForce(o, id)),
+    ];
+    let solves = prop_oneof![
+        4 => op().prop_map(Call::Init),
+        3 => (op(), number(), number(), number()).prop_map(|(o, m, d, t)| Call::InitDynamic(o, m, d, t)),
+        8 => (op(), 0..8_u32).prop_map(|(o, n)| Call::Solve(o, n)),
+        4 => (op(), prop::option::of(options()), prop::option::of(0..10_u32), prop::option::of(report))
+            .prop_map(|(o, s, c, r)| Call::SolveUntil(o, s, c, r)),
+    ];
+    let reads = prop_oneof![
+        2 => (op(), any::<bool>(), integer()).prop_map(|(o, null, n)| Call::GetPoints(o, null, n)),
+        1 => (op(), integer()).prop_map(|(o, id)| Call::IsConstraint(o, id)),
+        1 => (op(), integer()).prop_map(|(o, id)| Call::IsDegenerate(o, id)),
+        2 => (op(), any::<bool>()).prop_map(|(o, null)| Call::Energy(o, null)),
+        2 => (op(), any::<bool>(), integer()).prop_map(|(o, null, n)| Call::Violations(o, null, n)),
+        1 => (integer(), prop::option::of(named_type)).prop_map(|(i, s)| Call::ConstraintType(i, s)),
+        1 => (integer(), integer(), prop::option::of(scalar)).prop_map(|(i, j, s)| Call::ConstraintScalar(i, j, s)),
+        1 => integer().prop_map(Call::ErrorText),
+    ];
+    prop_oneof![5 => changes, 3 => solves, 1 => reads]
+}
+
+/// Bytes for a struct of any size, aligned as it is, that states this size.
+#[repr(C, align(16))]
+struct Room([u8; 8192]);
+
+impl Room {
+    fn stating(size: u32) -> Box<Self> {
+        let mut room = Box::new(Self([0; 8192]));
+        room.0[..4].copy_from_slice(&size.to_ne_bytes());
+        room
+    }
+}
+
+/// What a refused call must leave as it is.
+#[derive(Clone, Debug, PartialEq)]
+struct Picture {
+    points: Vec<u64>,
+    counts: [c_int; 4],
+    energy: Result<u64, c_int>,
+}
+
+fn last_error(op: *mut ShapeOpSolver) -> String {
+    // SAFETY: the library's texts end with a zero and are valid until this thread's next call.
+    unsafe { std::ffi::CStr::from_ptr(shapeop_lastError(op)) }.to_str().unwrap().to_owned()
+}
+
+/// The points of a live solver; `None` if there is none.
+fn points_of(op: *mut ShapeOpSolver) -> Option<Vec<f64>> {
+    let count = usize::try_from(shapeop_pointCount(op)).ok()?;
+    let mut points = vec![f64::NAN; 3 * count];
+    // SAFETY: as long as it says.
+    unsafe { shapeop_getPoints(op, points.as_mut_ptr(), count as c_int) };
+    Some(points)
+}
+
+fn picture(op: *mut ShapeOpSolver) -> Option<Picture> {
+    let points = points_of(op)?.iter().map(|c| c.to_bits()).collect();
+    let counts = [
+        shapeop_constraintCount(op),
+        shapeop_forceCount(op),
+        shapeop_unconstrainedCount(op),
+        (0..40).filter(|id| shapeop_isConstraint(op, *id) == 1).count() as c_int,
+    ];
+    let mut energy = 0.0;
+    // SAFETY: one double.
+    let energy = match unsafe { shapeop_energy(op, &mut energy) } {
+        SO_SUCCESS => Ok(energy.to_bits()),
+        code => Err(code as c_int),
+    };
+    Some(Picture { points, counts, energy })
+}
+
+struct Watch {
+    op: *mut ShapeOpSolver,
+    stop_at: u32,
+    is_wrong: bool,
+}
+
+extern "C" fn watch(progress: *const shapeop_progress, user: *mut c_void) -> c_int {
+    // SAFETY: `make` passes these.
+    let (progress, watch) = unsafe { (&*progress, &mut *user.cast::<Watch>()) };
+    let is_finite = points_of(watch.op).is_some_and(|points| points.iter().all(|c| c.is_finite()));
+    let is_busy = shapeop_solve(watch.op, 1) == 1 && shapeop_init(watch.op) == 1;
+    watch.is_wrong |= !is_finite || !is_busy || !progress.energy.is_finite() || !progress.largest_move.is_finite();
+    c_int::from(progress.iteration >= watch.stop_at)
+}
+
+/// The solvers of a sequence, and the constraints that each was given: id, type, number of indices.
+struct Own {
+    ops: [*mut ShapeOpSolver; 4],
+    constraints: Vec<(*mut ShapeOpSolver, c_int, CString, usize)>,
+}
+
+impl Own {
+    /// Three solvers with points in general position, and one without.
+    fn new() -> Self {
+        let ops = [(); 4].map(|()| shapeop_create());
+        let points: Vec<f64> = (0..3 * MOST_POINTS).map(|i| (i * i % 17) as f64 / 8.0 - 1.0).collect();
+        for op in &ops[..3] {
+            // SAFETY: as long as it says, only read.
+            unsafe { shapeop_setPoints(*op, points.as_ptr().cast_mut(), MOST_POINTS as c_int) };
+        }
+        Self { ops, constraints: Vec::new() }
+    }
+
+    fn named(&self, op: &Op) -> *mut ShapeOpSolver {
+        match op {
+            Op::Own(i) => self.ops[*i],
+            Op::Value(value) => ptr::without_provenance_mut(*value as usize),
+        }
+    }
+}
+
+/// Makes a call. Returns true if it was refused.
+fn make(call: &Call, own: &mut Own) -> Result<bool, String> {
+    let ops = Own { ops: own.ops, constraints: Vec::new() };
+    let at = |op: &Op| ops.named(op);
+    let name = |name: &Option<CString>| name.as_ref().map_or(ptr::null(), |name| name.as_ptr());
+    let refused = |code: shapeop_err| match code {
+        SO_INTERNAL => Err("SO_INTERNAL".to_owned()),
+        code => Ok(code != SO_SUCCESS),
+    };
+    let vector = |vector: &Option<[f64; 3]>| vector.as_ref().map_or(ptr::null_mut(), |v| v.as_ptr().cast_mut());
+    // Functions without a result: their message tells.
+    let says = |op: *mut ShapeOpSolver| Ok(!last_error(op).is_empty());
+    let check = |is_right: bool, what: &str| if is_right { Ok(()) } else { Err(what.to_owned()) };
+    // SAFETY: every pointer is null or leads to as many values as are stated with it, wherever the count is one that
+    // the call could accept; structs state a size within their room, or one that is refused.
+    unsafe {
+        match call {
+            Call::Create => {
+                let new = shapeop_create();
+                check(!new.is_null(), "create failed")?;
+                shapeop_delete(own.ops[0]);
+                own.ops.rotate_left(1);
+                own.ops[3] = new;
+                Ok(false)
+            }
+            Call::Delete(op) => {
+                shapeop_delete(at(op));
+                Ok(false)
+            }
+            Call::Init(op) => Ok(shapeop_init(at(op)) != 0),
+            Call::InitDynamic(op, masses, damping, step) => {
+                Ok(shapeop_initDynamic(at(op), *masses, *damping, *step) != 0)
+            }
+            Call::Solve(op, iterations) => Ok(shapeop_solve(at(op), *iterations) != 0),
+            Call::SetPoints(op, points) => {
+                let count = if let Array::Right(values) = points { values.len() as c_int / 3 } else { points.count() };
+                shapeop_setPoints(at(op), points.data().cast_mut(), count);
+                says(at(op))
+            }
+            Call::GetPoints(op, is_null, count) => {
+                let mut room = [7.0; 3 * MOST_POINTS];
+                let out = if *is_null { ptr::null_mut() } else { room.as_mut_ptr() };
+                shapeop_getPoints(at(op), out, *count);
+                check(room.iter().all(|c| c.is_finite()), "a point is not finite")?;
+                says(at(op))
+            }
+            Call::SetTimeStep(op, step) => {
+                shapeop_setTimeStep(at(op), *step);
+                says(at(op))
+            }
+            Call::SetDamping(op, damping) => {
+                shapeop_setDamping(at(op), *damping);
+                says(at(op))
+            }
+            Call::SetThreadCount(op, count) => refused(shapeop_setThreadCount(at(op), *count)),
+            Call::AddConstraint(op, type_name, ids, weight) => {
+                let ids_data = ids.data().cast_mut();
+                let id = shapeop_addConstraint(at(op), name(type_name), ids_data, ids.count(), *weight);
+                if let (0.., Some(type_name)) = (id, type_name) {
+                    own.constraints.push((at(op), id, type_name.clone(), ids.count() as usize));
+                }
+                Ok(id < 0)
+            }
+            Call::AddConstraints(op, type_name, ids, counts, weights, scalars, sets, flags, wants_ids) => {
+                let mut out = [-7; 16];
+                let out_data = if *wants_ids { out.as_mut_ptr() } else { ptr::null_mut() };
+                let is_refused = refused(shapeop_addConstraints(
+                    at(op),
+                    name(type_name),
+                    ids.data(),
+                    ids.count(),
+                    counts.data(),
+                    counts.count(),
+                    weights.data(),
+                    weights.count(),
+                    scalars.data(),
+                    scalars.count(),
+                    *sets,
+                    *flags,
+                    out_data,
+                ))?;
+                check(!is_refused || out == [-7; 16], "ids of a refused call")?;
+                Ok(is_refused)
+            }
+            Call::EditConstraint(op, type_name, id, scalars) => {
+                refused(shapeop_editConstraint(at(op), name(type_name), *id, scalars.data(), scalars.count()))
+            }
+            Call::EditOwn(op, pick, scalars) => {
+                let of_op: Vec<_> = own.constraints.iter().filter(|(solver, ..)| *solver == at(op)).collect();
+                let Some((_, id, type_name, index_count)) = of_op.get(pick % of_op.len().max(1)) else {
+                    return Ok(false);
+                };
+                let info = shapeop::constraints::types().find(|info| info.name.as_bytes() == type_name.to_bytes());
+                let count = match info.map(|info| info.scalars) {
+                    Some(shapeop::constraints::Scalars::Named(names)) => names.len(),
+                    Some(shapeop::constraints::Scalars::Shapes) => 3 * index_count,
+                    _ => 0,
+                };
+                let scalars = &scalars[..count.min(scalars.len())];
+                refused(shapeop_editConstraint(
+                    at(op),
+                    type_name.as_ptr(),
+                    *id,
+                    scalars.as_ptr(),
+                    scalars.len() as c_int,
+                ))
+            }
+            Call::SetWeight(op, id, weight) => refused(shapeop_setWeight(at(op), *id, *weight)),
+            Call::RemoveConstraint(op, id) => refused(shapeop_removeConstraint(at(op), *id)),
+            Call::IsConstraint(op, id) => Ok(shapeop_isConstraint(at(op), *id) < 0),
+            Call::IsDegenerate(op, id) => Ok(shapeop_isDegenerate(at(op), *id) < 0),
+            Call::AddGravity(op, force) => Ok(shapeop_addGravityForce(at(op), vector(force)) < 0),
+            Call::AddVertexForce(op, force, id) => Ok(shapeop_addVertexForce(at(op), vector(force), *id) < 0),
+            Call::EditVertexForce(op, force_id, force, id) => {
+                shapeop_editVertexForce(at(op), *force_id, vector(force), *id);
+                says(at(op))
+            }
+            Call::RemoveForce(op, id) => refused(shapeop_removeForce(at(op), *id)),
+            Call::SolveUntil(op, options, stop_at, report_size) => {
+                let mut options_room = Room::stating(options.as_ref().map_or(0, |options| options.struct_size));
+                if let Some(Options { max_iterations, tolerance, time_budget_seconds, .. }) = options {
+                    let out = options_room.0.as_mut_ptr().cast::<shapeop_solve_options>();
+                    (*out).max_iterations = *max_iterations;
+                    (*out).tolerance = *tolerance;
+                    (*out).time_budget_seconds = *time_budget_seconds;
+                }
+                let options_data = if options.is_some() { options_room.0.as_ptr().cast() } else { ptr::null() };
+                let mut report_room = Room::stating(report_size.unwrap_or(0));
+                let report = report_room.0.as_mut_ptr().cast::<shapeop_solve_report>();
+                let report_data = if report_size.is_some() { report } else { ptr::null_mut() };
+                let mut watched = Watch { op: at(op), stop_at: stop_at.unwrap_or(0), is_wrong: false };
+                let user = (&raw mut watched).cast();
+                let progress: shapeop_progress_callback = if stop_at.is_some() { Some(watch) } else { None };
+                let code = shapeop_solveUntil(at(op), options_data, progress, user, report_data);
+                check(!watched.is_wrong, "the callback saw what it should not")?;
+                let told = &*report;
+                let numbers = [told.energy_before, told.energy_after, told.largest_move];
+                check(numbers.iter().all(|number| number.is_finite()), "the report is not finite")?;
+                refused(code)
+            }
+            Call::Energy(op, is_null) => {
+                let mut energy = 0.0;
+                let out = if *is_null { ptr::null_mut() } else { &raw mut energy };
+                let is_refused = refused(shapeop_energy(at(op), out))?;
+                check(energy.is_finite(), "the energy is not finite")?;
+                Ok(is_refused)
+            }
+            Call::Violations(op, is_null, count) => {
+                // As long as there can be constraints in a sequence.
+                let mut room = [0.0; 16 * LONGEST_SEQUENCE];
+                let right = shapeop_constraintCount(at(op));
+                let count = if *count % 2 == 0 { right } else { *count };
+                let out = if *is_null { ptr::null_mut() } else { room.as_mut_ptr() };
+                let is_refused = refused(shapeop_getViolations(at(op), out, count))?;
+                check(room.iter().all(|violation| violation.is_finite() && *violation >= 0.0), "a violation is none")?;
+                Ok(is_refused)
+            }
+            Call::ConstraintType(index, size) => {
+                let mut room = Room::stating(size.unwrap_or(0));
+                let out = if size.is_some() { room.0.as_mut_ptr().cast() } else { ptr::null_mut() };
+                refused(shapeop_constraintType(*index, out))
+            }
+            Call::ConstraintScalar(index, scalar, size) => {
+                let mut room = Room::stating(size.unwrap_or(0));
+                let out = if size.is_some() { room.0.as_mut_ptr().cast() } else { ptr::null_mut() };
+                shapeop_constraintIndexName(*index, *scalar);
+                refused(shapeop_constraintScalar(*index, *scalar, out))
+            }
+            Call::ErrorText(code) => {
+                check(!shapeop_errorText(*code).is_null(), "no text")?;
+                Ok(false)
+            }
+        }
+    }
+}
+
+/// The handle that a call names, if it names one.
+fn named(call: &Call, own: &Own) -> *mut ShapeOpSolver {
+    let op = match call {
+        Call::Create | Call::ConstraintType(..) | Call::ConstraintScalar(..) | Call::ErrorText(_) => None,
+        Call::Delete(op) | Call::Init(op) | Call::InitDynamic(op, ..) | Call::Solve(op, _) => Some(op),
+        Call::SetPoints(op, _) | Call::GetPoints(op, ..) | Call::SetTimeStep(op, _) | Call::SetDamping(op, _) => {
+            Some(op)
+        }
+        Call::SetThreadCount(op, _) | Call::AddConstraint(op, ..) | Call::AddConstraints(op, ..) => Some(op),
+        Call::EditConstraint(op, ..)
+        | Call::EditOwn(op, ..)
+        | Call::SetWeight(op, ..)
+        | Call::RemoveConstraint(op, _) => Some(op),
+        Call::IsConstraint(op, _) | Call::IsDegenerate(op, _) | Call::AddGravity(op, _) => Some(op),
+        Call::AddVertexForce(op, ..) | Call::EditVertexForce(op, ..) | Call::RemoveForce(op, _) => Some(op),
+        Call::SolveUntil(op, ..) | Call::Energy(op, _) | Call::Violations(op, ..) => Some(op),
+    };
+    op.map_or(ptr::null_mut(), |op| own.named(op))
+}
+
+fn play(calls: &[Call], counts: &mut Counts) -> Result<(), TestCaseError> {
+    let trace = std::env::var_os("SHAPEOP_FUZZ_TRACE").is_some();
+    let mut own = Own::new();
+    let result = calls.iter().try_for_each(|call| {
+        if trace {
+            println!("{call:?}");
+        }
+        let op = named(call, &own);
+        let before = picture(op);
+        let is_refused = make(call, &mut own).map_err(|what| TestCaseError::fail(format!("{call:?}: {what}")))?;
+        counts.calls += 1;
+        if matches!(call, Call::Solve(..) | Call::SolveUntil(..)) && !is_refused {
+            counts.solves += 1;
+        }
+        let message = last_error(if op.is_null() { ptr::null_mut() } else { op });
+        prop_assert!(!message.contains("inside the library"), "{call:?}: {message}");
+        if is_refused {
+            counts.refused += 1;
+            prop_assert!(!message.is_empty(), "{call:?} was refused without a message");
+            prop_assert_eq!(before, picture(op), "{:?} was refused and changed something", call);
+        }
+        if let Some(points) = points_of(op) {
+            prop_assert!(points.iter().all(|c| c.is_finite()), "{call:?} left {points:?}");
+        }
+        Ok(())
+    });
+    own.ops.into_iter().for_each(|op| shapeop_delete(op));
+    result
+}
+
+#[derive(Default)]
+struct Counts {
+    sequences: u64,
+    calls: u64,
+    refused: u64,
+    /// Solves that were carried out.
+    solves: u64,
+}
+
+fn from_environment<T: std::str::FromStr>(name: &str, default: T) -> T {
+    std::env::var(name).ok().map_or(default, |text| text.parse().ok().unwrap_or_else(|| panic!("{name}={text}")))
+}
+
+#[test]
+fn random_calls_neither_crash_nor_hand_out_what_is_not_finite() {
+    let sequences = from_environment("SHAPEOP_FUZZ_SEQUENCES", SEQUENCES);
+    let seed: u64 = from_environment("SHAPEOP_FUZZ_SEED", 2026);
+    println!("fuzz: {sequences} sequences of C calls, seed {seed}");
+    let mut bytes = [0; 32];
+    bytes[..8].copy_from_slice(&seed.to_le_bytes());
+    let config =
+        Config { cases: sequences, failure_persistence: None, max_global_rejects: 1 << 20, ..Config::default() };
+    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &bytes));
+    let counts = std::cell::RefCell::new(Counts::default());
+    let result = runner.run(&prop::collection::vec(call(), 1..LONGEST_SEQUENCE), |calls| {
+        let mut counts = counts.borrow_mut();
+        counts.sequences += 1;
+        play(&calls, &mut counts)
+    });
+    let Counts { sequences, calls, refused, solves } = counts.into_inner();
+    println!(
+        "fuzz: {sequences} sequences, {calls} calls ({refused} refused), {solves} solves carried out, seed {seed}"
+    );
+    if let Err(error) = result {
+        panic!("{error}");
+    }
+    assert!(
+        calls - refused > calls / 3 && solves > u64::from(SEQUENCES.min(sequences as u32)) / 10,
+        "too little is done"
+    );
+}

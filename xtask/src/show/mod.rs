@@ -1,0 +1,74 @@
+//! `cargo xtask show AREA`: what the library promises, measured, each figure beside its target.
+
+mod engine;
+
+use anyhow::{Result, bail};
+use clap::ValueEnum;
+
+/// What can be shown.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Area {
+    /// Demo, parity, recipes on real meshes, a million vertices, random calls of the C functions.
+    Engine,
+}
+
+/// Measures and prints; fails if a figure is short of its target.
+pub fn run(area: Area) -> Result<()> {
+    let mut figures = Figures::default();
+    match area {
+        Area::Engine => engine::show(&mut figures)?,
+    }
+    println!();
+    if figures.short.is_empty() {
+        println!("{} figures, none short", figures.count);
+        return Ok(());
+    }
+    bail!("{} of {} figures short: {}", figures.short.len(), figures.count, figures.short.join(", "))
+}
+
+/// The figures printed so far.
+#[derive(Default)]
+pub struct Figures {
+    count: usize,
+    short: Vec<String>,
+}
+
+impl Figures {
+    /// Begins a group of figures.
+    pub fn group(&mut self, title: &str) {
+        println!("\n{title}");
+    }
+
+    /// A figure that must not exceed its target.
+    pub fn at_most(&mut self, name: &str, value: f64, target: f64) {
+        self.line(name, &number(value), &format!("at most {}", number(target)), value <= target);
+    }
+
+    /// A figure that must be exactly its target.
+    pub fn exactly(&mut self, name: &str, value: usize, target: usize) {
+        self.line(name, &value.to_string(), &target.to_string(), value == target);
+    }
+
+    /// A figure without a target.
+    pub fn plain(&mut self, name: &str, value: &str) {
+        println!("  {name:<58} {value:>12}");
+    }
+
+    fn line(&mut self, name: &str, value: &str, target: &str, is_ok: bool) {
+        self.count += 1;
+        let verdict = if is_ok { "ok" } else { "short" };
+        println!("  {name:<58} {value:>12}  {target:<18} {verdict}");
+        if !is_ok {
+            self.short.push(name.to_owned());
+        }
+    }
+}
+
+/// A number in four digits, plainly or in powers of ten.
+pub fn number(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        1e-3..1e5 => format!("{value:.4}"),
+        _ => format!("{value:.1e}"),
+    }
+}
