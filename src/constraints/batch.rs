@@ -194,6 +194,7 @@ impl<T: Constraint> Batch for TypedBatch<T> {
     fn set_scalars(&mut self, slot: usize, scalars: &[f64]) -> bool {
         let measure = self.measure(slot);
         self.scalars.replace(slot, scalars);
+        self.rest[slot].scalars_changed(scalars);
         let (rows, range) = (self.computed_rows(slot), self.coefficient_range(slot));
         let changed = self.coefficients[range.clone()] != rows || self.measure(slot) != measure;
         self.coefficients[range].copy_from_slice(&rows);

@@ -58,7 +58,16 @@ impl<T: Constraint> Sample<T> {
         match T::INFO.scalars {
             Scalars::None => {}
             Scalars::Shapes => {
-                sample.scalars = stream.vectors(2 * rest.len()).iter().flat_map(DVec3::to_array).collect();
+                let k = rest.len();
+                // A regular polygon, which has fast ways of its own, or two shapes of any kind.
+                let (u, v, center) = (stream.vector(), stream.vector(), stream.vector());
+                let v = (v - v.dot(u) / u.length_squared() * u).normalize() * u.length();
+                let corner = |j: usize| {
+                    let (sin, cos) = (std::f64::consts::TAU * j as f64 / k as f64).sin_cos();
+                    center + cos * u + sin * v
+                };
+                let shapes = if stream.next() < 0.7 { (0..k).map(corner).collect() } else { stream.vectors(2 * k) };
+                sample.scalars = shapes.iter().flat_map(DVec3::to_array).collect();
             }
             Scalars::Named(_) => {
                 let defaults = sample.scalars.clone();
@@ -68,6 +77,7 @@ impl<T: Constraint> Sample<T> {
                     .unwrap_or(defaults);
             }
         }
+        sample.constraint.scalars_changed(&sample.scalars);
         sample
     }
 

@@ -121,6 +121,9 @@ pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
         1.0
     }
 
+    /// Called when the scalars were edited, before anything else is asked.
+    fn scalars_changed(&mut self, _scalars: &[f64]) {}
+
     /// Writes the coefficients, row by row (`row_count * k`), into zeroed memory. Not called for centred types.
     fn rows(&self, _scalars: &[f64], _coefficients: &mut [f64]) {}
 

@@ -9,6 +9,7 @@
 use glam::{DMat3, DVec3};
 
 use super::Stencil;
+use crate::linalg::lanes::{F4, V4};
 use crate::linalg::small::nearest_rotation;
 
 /// Whether the template may be scaled.
@@ -45,12 +46,29 @@ fn mean(scalars: &[f64], k: usize, shape: usize) -> DVec3 {
     first + (0..k).map(|i| vertex(scalars, k, shape, i) - first).sum::<DVec3>() / k as f64
 }
 
+/// How far the bound on a trace may be exceeded by round-off, relative to the bound.
+const BOUND_SLACK: f64 = 1e-12;
+
+/// A bound on the trace that the best rotation reaches: the sum of the singular values of `h`. With `F² = Σσᵢ²` and
+/// `C² = σ₀²σ₁² + σ₁²σ₂² + σ₂²σ₀²` (the squared norm of the cofactors), `(Σσᵢ)² = F² + 2 Σσᵢσⱼ ≤ F² + 2 √3 C`.
+fn trace_bound(h: DMat3) -> f64 {
+    let squared = |a: DVec3, b: DVec3, c: DVec3| a.length_squared() + b.length_squared() + c.length_squared();
+    let (a, b, c) = (h.x_axis, h.y_axis, h.z_axis);
+    let cofactors = squared(a.cross(b), b.cross(c), c.cross(a)).sqrt();
+    (squared(a, b, c) + 2.0 * 3_f64.sqrt() * cofactors).sqrt() * (1.0 + BOUND_SLACK)
+}
+
 fn best(scalars: &[f64], x: Stencil<'_>, scale: Scale) -> Option<Candidate> {
     let k = x.len();
     let mut best: Option<Candidate> = None;
     for shape in 0..scalars.len() / (3 * k) {
         let mean = mean(scalars, k, shape);
         let squared: f64 = (0..k).map(|i| (vertex(scalars, k, shape, i) - mean).length_squared()).sum();
+        let outcome = |trace: f64| match scale {
+            Scale::Free if squared > 0.0 => (-trace * (trace / squared), trace / squared),
+            Scale::Free => (0.0, 0.0),
+            Scale::Fixed => (squared - 2.0 * trace, 1.0),
+        };
         for is_mirrored in [false, true] {
             for shift in 0..k {
                 let mut covariance = DMat3::ZERO;
@@ -58,12 +76,12 @@ fn best(scalars: &[f64], x: Stencil<'_>, scale: Scale) -> Option<Candidate> {
                     let q = vertex(scalars, k, shape, order(k, shift, is_mirrored, j)) - mean;
                     covariance += DMat3::from_cols(point * q.x, point * q.y, point * q.z);
                 }
+                // Most orders are far worse than the best so far: no rotation needs to be fitted to know.
+                if best.as_ref().is_some_and(|best| outcome(trace_bound(covariance)).0 > best.squared_distance) {
+                    continue;
+                }
                 let (rotation, trace) = nearest_rotation(covariance);
-                let (squared_distance, factor) = match scale {
-                    Scale::Free if squared > 0.0 => (-trace * (trace / squared), trace / squared),
-                    Scale::Free => (0.0, 0.0),
-                    Scale::Fixed => (squared - 2.0 * trace, 1.0),
-                };
+                let (squared_distance, factor) = outcome(trace);
                 if best.as_ref().is_none_or(|best| squared_distance < best.squared_distance) {
                     best = Some(Candidate { squared_distance, shape, shift, is_mirrored, turn: rotation * factor });
                 }
@@ -89,6 +107,81 @@ pub fn violation(scalars: &[f64], x: Stencil<'_>, scale: Scale) -> f64 {
     let mut worst = 0.0_f64;
     project(scalars, x, scale, |j, target| worst = worst.max(x.at(j).distance(target)));
     worst
+}
+
+/// How far a template may be from a regular polygon, relative to its radius, to be taken for one: what is left when its
+/// coordinates were written in decimal.
+const REGULAR: f64 = 1e-12;
+
+/// The circumradius of the template if there is one, and it is a regular polygon: then the `2 k` orders are turns of each
+/// other. Else 0.
+pub fn polygon_radius(scalars: &[f64], k: usize) -> f64 {
+    if k < 3 || scalars.len() != 3 * k {
+        return 0.0;
+    }
+    let mean = mean(scalars, k, 0);
+    let corner = |j: usize| vertex(scalars, k, 0, j) - mean;
+    let radius = corner(0).length();
+    // The axes of the plane: to corner 0, and at a right angle to it towards corner 1.
+    let Some(u) = corner(0).try_normalize() else { return 0.0 };
+    let Some(v) = (corner(1) - corner(1).dot(u) * u).try_normalize() else { return 0.0 };
+    let is_regular = (0..k).all(|j| {
+        let (sin, cos) = (std::f64::consts::TAU * j as f64 / k as f64).sin_cos();
+        corner(j).distance(radius * (cos * u + sin * v)) <= REGULAR * radius
+    });
+    if is_regular { radius } else { 0.0 }
+}
+
+/// The cosine and sine of a corner's turn in a regular polygon of `k` corners.
+#[inline(always)]
+fn corner_turn(k: usize) -> (f64, f64) {
+    match k {
+        3 => (-0.5, 0.866_025_403_784_438_6),
+        4 => (0.0, 1.0),
+        5 => (0.309_016_994_374_947_45, 0.951_056_516_295_153_5),
+        6 => (0.5, 0.866_025_403_784_438_6),
+        7 => (0.623_489_801_858_733_5, 0.781_831_482_468_029_8),
+        _ => (std::f64::consts::FRAC_1_SQRT_2, std::f64::consts::FRAC_1_SQRT_2),
+    }
+}
+
+/// How round points must be for the closed form: the area that they span over the square of their size.
+const LEAST_ROUNDNESS: f64 = 1e-3;
+
+/// Four regular polygons of `x.len()` corners (3 to 8), of any size if `radius` is none, nearest to the points `x` about their
+/// means; and which of the four the closed form is not accurate for.
+///
+/// With `p = Σ x_j cos(2πj/k)`, `q = Σ x_j sin(2πj/k)` and `M = [p q]`, the best orthonormal pair of axes is the polar factor
+/// `M (MᵀM)^(−½)`. The root of the 2×2 matrix `G = MᵀM` is `(G + s I)/t` with `s = √det G` and `t = √(tr G + 2s)`. As `t` is the sum
+/// of the singular values of `M`, and a unit polygon's squared norm is `k`, the best radius is `t/k`.
+#[inline(always)]
+pub fn project_regular_four<const FMA: bool>(x: &[V4], radius: Option<F4>, targets: &mut [V4]) -> [bool; 4] {
+    let k = x.len();
+    let (step_cos, step_sin) = corner_turn(k);
+    let next = |(cos, sin): (f64, f64)| (cos * step_cos - sin * step_sin, sin * step_cos + cos * step_sin);
+    let (mut p, mut q, mut turn) = (V4::ZERO, V4::ZERO, (1.0, 0.0));
+    for &point in x {
+        p = point.mul_add::<FMA>(F4::splat(turn.0), p);
+        q = point.mul_add::<FMA>(F4::splat(turn.1), q);
+        turn = next(turn);
+    }
+    let (pp, pq, qq) = (p.dot::<FMA>(p), p.dot::<FMA>(q), q.dot::<FMA>(q));
+    let determinant = pp.mul_add::<FMA>(qq, -(pq * pq));
+    let s = determinant.max(F4::splat(0.0)).sqrt();
+    let t = (pp + qq + s + s).sqrt();
+    // (G + s I)⁻¹ t, its own determinant being s t².
+    let factor = F4::splat(1.0) / (s * t);
+    let (a, b, d) = ((qq + s) * factor, -(pq * factor), (pp + s) * factor);
+    let u = (p * a).mul_add::<FMA>(F4::splat(1.0), q * b);
+    let v = (p * b).mul_add::<FMA>(F4::splat(1.0), q * d);
+    let radius = radius.unwrap_or(t * F4::splat(1.0 / k as f64));
+    let (u, v) = (u * radius, v * radius);
+    turn = (1.0, 0.0);
+    for target in targets {
+        *target = u.mul_add::<FMA>(F4::splat(turn.0), v * F4::splat(turn.1));
+        turn = next(turn);
+    }
+    std::array::from_fn(|i| !(s.0[i] > LEAST_ROUNDNESS * (pp.0[i] + qq.0[i])))
 }
 
 /// True if every template has shrunk to a point.

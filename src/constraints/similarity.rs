@@ -9,12 +9,15 @@
 use glam::DVec3;
 
 use super::shape_fit::{self, Scale};
-use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
+use crate::linalg::lanes::V4;
 
-/// One Similarity constraint. Its templates are its scalars; it keeps the number of points.
+/// One Similarity constraint. Its templates are its scalars; it keeps what is known of them.
 #[derive(Clone, Debug)]
 pub struct Similarity {
     point_count: usize,
+    /// The circumradius, if the template is one regular polygon; else 0.
+    polygon_radius: f64,
 }
 
 impl Constraint for Similarity {
@@ -34,7 +37,24 @@ impl Constraint for Similarity {
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         scalars.extend(x.iter().flat_map(|point| point.to_array()));
-        Self { point_count: x.len() }
+        let mut new = Self { point_count: x.len(), polygon_radius: 0.0 };
+        new.scalars_changed(&scalars[scalars.len() - 3 * x.len()..]);
+        new
+    }
+
+    fn scalars_changed(&mut self, scalars: &[f64]) {
+        self.polygon_radius = shape_fit::polygon_radius(scalars, self.point_count);
+    }
+
+    fn takes_four(k: usize) -> bool {
+        k >= 3
+    }
+
+    #[inline(always)]
+    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
+        let radius = four.rest(|shape| shape.polygon_radius);
+        let is_left = shape_fit::project_regular_four::<FMA>(x, None, targets);
+        std::array::from_fn(|i| radius.0[i] == 0.0 || is_left[i])
     }
 
     fn project(&self, scalars: &[f64], x: Stencil<'_>, targets: &mut [DVec3]) {
