@@ -10,9 +10,12 @@
 
 use glam::DVec3;
 
-use super::deformation::{RestShape, move_product_into, recompose, strain_violation};
-use super::{Constraint, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
+use super::deformation::{
+    RestShape, gradient_four, move_product_into, move_product_into_four, recompose, strain_violation,
+};
+use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
+use crate::linalg::lanes::{self, V4};
 
 /// One Area constraint: its rest shape.
 #[derive(Clone, Debug)]
@@ -53,6 +56,17 @@ impl Constraint for Area {
     fn project(&self, scalars: &[f64], x: Stencil<'_>, targets: &mut [DVec3]) {
         let svd = self.0.decompose(x);
         recompose(&svd, move_product_into(svd.s, [scalars[0], scalars[1]]), targets);
+    }
+
+    fn takes_four(_k: usize) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
+        let svd = lanes::svd::<2, FMA>(gradient_four::<2, FMA, _>(&four, |triangle| &triangle.0, x));
+        let s = move_product_into_four::<2, FMA>(svd.s, [four.scalar(0), four.scalar(1)]);
+        svd.recompose::<FMA>(s, targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

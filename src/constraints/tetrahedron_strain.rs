@@ -11,9 +11,10 @@
 
 use glam::DVec3;
 
-use super::deformation::{RestShape, orientation, recompose, strain_violation};
-use super::{Constraint, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
+use super::deformation::{RestShape, gradient_four, orientation, recompose, strain_violation};
+use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
+use crate::linalg::lanes::{self, V4};
 
 /// One TetrahedronStrain constraint: its rest shape.
 #[derive(Clone, Debug)]
@@ -56,6 +57,19 @@ impl Constraint for TetrahedronStrain {
         let mut s = svd.s.map(|s| s.clamp(scalars[0], scalars[1]));
         s[2] *= orientation(&svd);
         recompose(&svd, s, targets);
+    }
+
+    fn takes_four(_k: usize) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
+        let gradient = gradient_four::<3, FMA, _>(&four, |tetrahedron| &tetrahedron.0, x);
+        let svd = lanes::svd::<3, FMA>(gradient);
+        let (min, max) = (four.scalar(0), four.scalar(1));
+        let s = svd.turn_inside_out::<FMA>(gradient, svd.s.map(|s| s.max(min).min(max)));
+        svd.recompose::<FMA>(s, targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -10,9 +10,12 @@
 
 use glam::DVec3;
 
-use super::deformation::{RestShape, move_product_into, orientation, recompose, strain_violation};
-use super::{Constraint, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
+use super::deformation::{
+    RestShape, gradient_four, move_product_into, move_product_into_four, orientation, recompose, strain_violation,
+};
+use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
+use crate::linalg::lanes::{self, V4};
 
 /// One Volume constraint: its rest shape.
 #[derive(Clone, Debug)]
@@ -55,6 +58,18 @@ impl Constraint for Volume {
         let mut s = move_product_into(svd.s, [scalars[0], scalars[1]]);
         s[2] *= orientation(&svd);
         recompose(&svd, s, targets);
+    }
+
+    fn takes_four(_k: usize) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
+        let gradient = gradient_four::<3, FMA, _>(&four, |tetrahedron| &tetrahedron.0, x);
+        let svd = lanes::svd::<3, FMA>(gradient);
+        let s = move_product_into_four::<3, FMA>(svd.s, [four.scalar(0), four.scalar(1)]);
+        svd.recompose::<FMA>(svd.turn_inside_out::<FMA>(gradient, s), targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

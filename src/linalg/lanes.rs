@@ -255,3 +255,101 @@ pub fn least_eigenvector<const FMA: bool>(diagonal: V4, off: V4) -> (V4, [bool; 
     });
     (normal, is_doubtful)
 }
+
+/// Sweeps of Jacobi rotations at most: from the fourth on hardly any lane needs one.
+const MAX_SWEEPS: usize = 8;
+
+/// Two columns count as orthogonal when the square of their inner product is below this multiple of the product of their squared
+/// norms: a few units in the last place of the cosine.
+const ORTHOGONAL: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
+
+/// Singular value decompositions `A = Σ_i a_i v_iᵀ` of four matrices with `N` columns.
+#[derive(Clone, Copy, Debug)]
+pub struct Svd4<const N: usize> {
+    /// `a_i = s_i u_i`: orthogonal, in no order.
+    pub a: [V4; N],
+    /// Their lengths, the singular values.
+    pub s: [F4; N],
+    /// `v[i][j]` is entry `j` of `v_i`: orthonormal.
+    pub v: [[F4; N]; N],
+}
+
+/// Decomposes four matrices by one-sided Jacobi rotations, as [`super::small::svd`] does one.
+#[inline(always)]
+pub fn svd<const N: usize, const FMA: bool>(columns: [V4; N]) -> Svd4<N> {
+    let mut a = columns;
+    let mut v: [[F4; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| F4::splat(f64::from(u8::from(i == j)))));
+    let (zero, one, four) = (F4::splat(0.0), F4::splat(1.0), F4::splat(4.0));
+    for _ in 0..MAX_SWEEPS {
+        let mut is_orthogonal = true;
+        for p in 0..N {
+            for q in p + 1..N {
+                let (alpha, beta, gamma) = (a[p].dot::<FMA>(a[p]), a[q].dot::<FMA>(a[q]), a[p].dot::<FMA>(a[q]));
+                let squared = gamma * gamma;
+                is_orthogonal &= (0..4).all(|i| squared.0[i] <= ORTHOGONAL * alpha.0[i] * beta.0[i]);
+                // The smaller root of t² + 2τt − 1 = 0 with τ = (β − α)/(2γ), written so that γ may vanish.
+                let difference = beta - alpha;
+                let sum = difference.abs() + difference.mul_add::<FMA>(difference, four * squared).sqrt();
+                let signed = difference.where_above(-F4::splat(f64::MIN_POSITIVE), gamma + gamma, -(gamma + gamma));
+                let t = sum.where_above(zero, signed / sum, zero);
+                let c = one / t.mul_add::<FMA>(t, one).sqrt();
+                let s = t * c;
+                (a[p], a[q]) = (
+                    V4 {
+                        x: c.mul_add::<FMA>(a[p].x, -(s * a[q].x)),
+                        y: c.mul_add::<FMA>(a[p].y, -(s * a[q].y)),
+                        z: c.mul_add::<FMA>(a[p].z, -(s * a[q].z)),
+                    },
+                    V4 {
+                        x: s.mul_add::<FMA>(a[p].x, c * a[q].x),
+                        y: s.mul_add::<FMA>(a[p].y, c * a[q].y),
+                        z: s.mul_add::<FMA>(a[p].z, c * a[q].z),
+                    },
+                );
+                for j in 0..N {
+                    (v[p][j], v[q][j]) =
+                        (c.mul_add::<FMA>(v[p][j], -(s * v[q][j])), s.mul_add::<FMA>(v[p][j], c * v[q][j]));
+                }
+            }
+        }
+        if is_orthogonal {
+            break;
+        }
+    }
+    Svd4 { a, s: a.map(|column| column.dot::<FMA>(column).sqrt()), v }
+}
+
+/// How small the least singular value may be against the greatest for its column to say a direction to many digits.
+const LEAST_VALUE: f64 = 1e-4;
+
+impl<const N: usize> Svd4<N> {
+    /// The columns of `Σ_i (s'_i/s_i) a_i v_iᵀ`, and in which lanes a singular value is too small to be divided by.
+    #[inline(always)]
+    pub fn recompose<const FMA: bool>(&self, s: [F4; N], columns: &mut [V4]) -> [bool; 4] {
+        let scaled: [V4; N] = std::array::from_fn(|i| self.a[i] * (s[i] / self.s[i]));
+        for (j, column) in columns.iter_mut().enumerate() {
+            *column = (0..N).fold(V4::ZERO, |sum, i| scaled[i].mul_add::<FMA>(self.v[i][j], sum));
+        }
+        let greatest = self.s.iter().fold(F4::splat(0.0), |most, &s| most.max(s));
+        let least = self.s.iter().fold(greatest, |least, &s| least.min(s));
+        std::array::from_fn(|i| !(least.0[i] > LEAST_VALUE * greatest.0[i] && greatest.0[i] < f64::MAX))
+    }
+}
+
+impl Svd4<3> {
+    /// `s` with the sign of the value changed whose singular value is the least, where the determinant of `columns` is below 0.
+    #[inline(always)]
+    pub fn turn_inside_out<const FMA: bool>(&self, columns: [V4; 3], s: [F4; 3]) -> [F4; 3] {
+        let determinant = columns[0].cross::<FMA>(columns[1]).dot::<FMA>(columns[2]);
+        let least = self.s[0].min(self.s[1]).min(self.s[2]);
+        let is_done = F4::splat(f64::MIN_POSITIVE);
+        let mut sign_left = F4::splat(1.0);
+        std::array::from_fn(|i| {
+            // The first that is not above the least is the least.
+            let flips = self.s[i].where_above(least, F4::splat(0.0), sign_left);
+            sign_left = flips.where_above(is_done, F4::splat(0.0), sign_left);
+            let flipped = flips.where_above(is_done, -s[i], s[i]);
+            determinant.where_above(-is_done, s[i], flipped)
+        })
+    }
+}
