@@ -14,15 +14,27 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{Constraint, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo};
 use crate::error::{Error, Result, Status};
+use crate::linalg::lanes::{F4, V4};
 
 /// Edges are collinear where `1 − |cos|` is at or below this, as libShapeOp has it.
 const COLLINEAR: f64 = 1e-14;
 
+/// `1 − cos²` from which on the plane of the edges is known to many digits.
+const LEAST_SQUARED_SINE: f64 = 1e-6;
+
+/// The cosine of the largest correction that four at once make, short of a right angle.
+const LEAST_COSINE: f64 = 0.05;
+
 /// One Angle constraint; it has no rest state.
 #[derive(Clone, Debug)]
-pub struct Angle;
+pub struct Angle {
+    /// Cosine and sine of the least angle.
+    min: [f64; 2],
+    /// Cosine and sine of the greatest angle.
+    max: [f64; 2],
+}
 
 /// The foot of `edge` on the direction that lies by `turn` from it towards the unit vector `across`, which is orthogonal to it.
 fn turned(edge: DVec3, across: DVec3, turn: f64) -> DVec3 {
@@ -58,7 +70,14 @@ impl Constraint for Angle {
 
     fn at_rest(_x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         scalars.extend([0.0, PI]);
-        Self
+        Self { min: [1.0, 0.0], max: [-1.0, 0.0] }
+    }
+
+    fn scalars_changed(&mut self, scalars: &[f64]) {
+        [self.min, self.max] = [scalars[0], scalars[1]].map(|angle_rad| {
+            let (sin, cos) = angle_rad.sin_cos();
+            [cos, sin]
+        });
     }
 
     fn check_scalars(scalars: &[f64]) -> Result<()> {
@@ -99,6 +118,58 @@ impl Constraint for Angle {
         targets[1] = turned(f, to_e, excess - turn);
     }
 
+    fn takes_four(_k: usize) -> bool {
+        true
+    }
+
+    /// As [`Self::project`], by cosines and sines alone: those of the correction `η` from those of the angle and of its bound, those
+    /// of `θ` by halving the angle whose tangent is given.
+    #[inline(always)]
+    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
+        let (zero, half, one) = (F4::splat(0.0), F4::splat(0.5), F4::splat(1.0));
+        let (e, f) = (x[1] - x[0], x[2] - x[0]);
+        let (ee, ff) = (e.dot::<FMA>(e), f.dot::<FMA>(f));
+        let normal = e.cross::<FMA>(f);
+        let product = (ee * ff).sqrt();
+        let cos = e.dot::<FMA>(f) / product;
+        let sin = normal.dot::<FMA>(normal).sqrt() / product;
+        let bound = |i: usize, large: F4| {
+            large.where_above(zero, four.rest(|angle| angle.max[i]), four.rest(|angle| angle.min[i]))
+        };
+        // Positive where the angle is too large, or where it is too small; the bounds are in [0, π], where the cosine falls.
+        let large = four.rest(|angle| angle.max[0]) - cos;
+        let small = cos - four.rest(|angle| angle.min[0]);
+        let (bound_cos, bound_sin) = (bound(0, large), bound(1, large));
+        let eta_cos = cos.mul_add::<FMA>(bound_cos, sin * bound_sin);
+        // Signed: below 0 where the edges turn away from each other.
+        let eta_sin = sin.mul_add::<FMA>(bound_cos, -(cos * bound_sin));
+        let ratio = ff / ee;
+        let double_sin = (eta_sin + eta_sin) * eta_cos;
+        let double_cos = one - (eta_sin + eta_sin) * eta_sin;
+        let (opposite, adjacent) = (ratio * double_sin, ratio.mul_add::<FMA>(double_cos, one));
+        let hypotenuse = opposite.mul_add::<FMA>(opposite, adjacent * adjacent).sqrt();
+        let theta_cos = (half + half * (adjacent / hypotenuse)).sqrt();
+        let theta_sin = half * (opposite / hypotenuse) / theta_cos;
+        let phi_cos = eta_cos.mul_add::<FMA>(theta_cos, eta_sin * theta_sin);
+        let phi_sin = eta_sin.mul_add::<FMA>(theta_cos, -(eta_cos * theta_sin));
+        // The foot of an edge `l u` on its new direction: l cos (cos u + sin across), `across` = (other's unit − cos u)/sin.
+        let turned = |edge: V4, other: V4, scale: F4, turn_cos: F4, turn_sin: F4| {
+            let along = turn_cos * (turn_cos - turn_sin * cos / sin);
+            edge.mul_add::<FMA>(along, other * (turn_cos * turn_sin * scale / sin))
+        };
+        let is_off = large.max(small);
+        let length_ratio = ratio.sqrt();
+        let moved =
+            [turned(e, f, one / length_ratio, theta_cos, theta_sin), turned(f, e, length_ratio, phi_cos, phi_sin)];
+        for ((target, moved), edge) in targets.iter_mut().zip(moved).zip([e, f]) {
+            *target = V4::where_above(is_off, zero, moved, edge);
+        }
+        std::array::from_fn(|i| {
+            let is_safe = eta_cos.0[i] > LEAST_COSINE && sin.0[i] * sin.0[i] > LEAST_SQUARED_SINE;
+            !(is_safe && product.0[i] > f64::MIN_POSITIVE && product.0[i] < f64::MAX)
+        })
+    }
+
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {
         let [apex, first, second] = x.array();
         let (e, f) = (first - apex, second - apex);
@@ -114,6 +185,10 @@ impl Constraint for Angle {
 mod tests {
     use super::*;
 
+    fn angle() -> Angle {
+        Angle::at_rest(Stencil::absolute(&[DVec3::ZERO], &[0, 0, 0]), &mut Vec::new())
+    }
+
     #[test]
     fn equal_edges_share_the_correction() {
         // A right angle that may be 60° at most: each edge turns by 15° and keeps cos 15° of its length.
@@ -121,13 +196,13 @@ mod tests {
         let stencil = Stencil::absolute(&points, &[0, 1, 2]);
         let mut targets = [DVec3::ZERO; 2];
         let range = [0.0, 60_f64.to_radians()];
-        Angle.project(&range, stencil, &mut targets);
+        angle().project(&range, stencil, &mut targets);
         let (sin, cos) = 15_f64.to_radians().sin_cos();
         assert!((targets[0] - cos * DVec3::new(cos, sin, 0.0)).length() < 1e-15);
         assert!((targets[1] - cos * DVec3::new(sin, cos, 0.0)).length() < 1e-15);
-        assert!((Angle.violation(&range, stencil) - 30_f64.to_radians()).abs() < 1e-15);
+        assert!((angle().violation(&range, stencil) - 30_f64.to_radians()).abs() < 1e-15);
         // At least 120°: away from each other.
-        Angle.project(&[120_f64.to_radians(), PI], stencil, &mut targets);
+        angle().project(&[120_f64.to_radians(), PI], stencil, &mut targets);
         assert!((targets[0] - cos * DVec3::new(cos, -sin, 0.0)).length() < 1e-15);
     }
 
@@ -138,7 +213,7 @@ mod tests {
         let stencil = Stencil::absolute(&points, &[0, 1, 2]);
         for bound in [0.1, 0.5, 1.0, 1.2] {
             let mut targets = [DVec3::ZERO; 2];
-            Angle.project(&[0.0, bound], stencil, &mut targets);
+            angle().project(&[0.0, bound], stencil, &mut targets);
             assert!((angle_between(targets[0], targets[1]) - bound).abs() < 1e-14);
             let cost = targets[0].distance_squared(points[1]) + targets[1].distance_squared(points[2]);
             let correction = angle_between(points[1], points[2]) - bound;
@@ -161,8 +236,8 @@ mod tests {
         let points = [DVec3::ZERO, DVec3::X, -2.0 * DVec3::X];
         let stencil = Stencil::absolute(&points, &[0, 1, 2]);
         let mut targets = [DVec3::ZERO; 2];
-        Angle.project(&[0.5, 1.0], stencil, &mut targets);
+        angle().project(&[0.5, 1.0], stencil, &mut targets);
         assert_eq!(targets, [points[1], points[2]]);
-        assert!((Angle.violation(&[0.5, 1.0], stencil) - (PI - 1.0)).abs() < 1e-15);
+        assert!((angle().violation(&[0.5, 1.0], stencil) - (PI - 1.0)).abs() < 1e-15);
     }
 }
