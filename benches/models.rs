@@ -6,6 +6,7 @@ use shapeop::problem::Force;
 use shapeop::solver::Solver;
 
 /// Constraints of one type, as many as there are.
+#[derive(Debug)]
 pub struct Group {
     /// The type.
     pub type_name: &'static str,
@@ -22,6 +23,7 @@ pub struct Group {
 }
 
 /// A problem as data.
+#[derive(Debug)]
 pub struct Model {
     /// Where the points are when the constraints are added.
     pub points: Vec<DVec3>,
@@ -109,7 +111,7 @@ pub fn model(name: &str, vertex_count: u32) -> Option<Model> {
     let n = f64::from(vertex_count).sqrt().round().max(3.0) as u32;
     let points = sheet(n);
     let corners = vec![0, n - 1, n * (n - 1), n * n - 1];
-    let (none, spacing) = (DVec3::ZERO, 1.0 / f64::from(n));
+    let none = DVec3::ZERO;
     let still = |groups| Model { points: points.clone(), groups, gravity: none, dynamics: None };
     Some(match name {
         "planar_quads" => {
@@ -210,12 +212,13 @@ pub fn model(name: &str, vertex_count: u32) -> Option<Model> {
         }
         _ => return None,
     })
-    .map(|model| Model { ..model })
-    .filter(|_| spacing > 0.0)
 }
 
 impl Model {
     /// A solver with the model's points, constraints and forces, not yet initialised.
+    ///
+    /// # Errors
+    /// As [`Solver::add_constraints`].
     pub fn solver(&self) -> Result<Solver, shapeop::error::Error> {
         let mut solver = Solver::new();
         solver.set_points(&self.points)?;
@@ -236,6 +239,9 @@ impl Model {
     }
 
     /// Initialises in the model's mode.
+    ///
+    /// # Errors
+    /// As the solver's own.
     pub fn init(&self, solver: &mut Solver) -> Result<(), shapeop::error::Error> {
         match self.dynamics {
             Some([mass, damping, timestep]) => solver.init_dynamic(mass, damping, timestep),

@@ -80,7 +80,7 @@ impl Constraint for Rectangle {
         // Those of the sides 12 and 30 are turned by a right angle.
         let side = |i: usize| {
             let [a, b] = [0, 1].map(|axis| corners[(i + 1) % 4][axis] - corners[i][axis]);
-            if i % 2 == 0 { [a, b] } else { [-b, a] }
+            if i.is_multiple_of(2) { [a, b] } else { [-b, a] }
         };
         let (mut difference, mut double) = (zero, zero);
         for [a, b] in [side(0), side(1), side(2), side(3)] {

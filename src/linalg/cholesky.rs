@@ -375,4 +375,31 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn solutions_leave_no_residual_and_are_the_same_bits_on_any_number_of_threads() {
+        // The largest is cut into parts.
+        for n in [3, 30, 120] {
+            let matrix = grid(n, 1.0, 1.0);
+            let analysis = Analysis::new(&matrix).unwrap();
+            let mut factor = Factor::new(&analysis).unwrap();
+            factor.factorise(&analysis, &matrix).unwrap();
+            let count = (n * n) as usize;
+            let right: Vec<DVec3> =
+                (0..count).map(|i| DVec3::new((i % 7) as f64 - 3.0, (i % 11) as f64 - 5.0, (i % 3) as f64)).collect();
+            let mut x = right.clone();
+            factor.solve(&mut x, false);
+            let mut image = vec![DVec3::ZERO; count];
+            matrix.multiply(&x, &mut image);
+            let largest = x.iter().map(|x| x.length()).fold(0.0, f64::max);
+            let residual = image.iter().zip(&right).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+            assert!(residual < 1e-13 * largest, "{n} × {n}: residual {residual:e} at a solution of {largest:e}");
+            for thread_count in [1, 2, 7] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().unwrap();
+                let mut other = right.clone();
+                pool.install(|| factor.solve(&mut other, true));
+                assert!(other == x, "{n} × {n}: other bits on {thread_count} threads");
+            }
+        }
+    }
 }

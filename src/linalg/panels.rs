@@ -118,11 +118,6 @@ impl Panels {
         Self { position, parts, x: vec![[0.0; 4]; dimension], buffers }
     }
 
-    /// The number of values, the zeros of diagonal blocks included.
-    pub fn value_count(&self) -> usize {
-        self.parts.iter().map(|part| part.value_count).sum()
-    }
-
     /// Where unknown `i` of the elimination order lies in [`Self::unknowns_mut`].
     pub fn position(&self) -> &[u32] {
         &self.position
@@ -143,12 +138,18 @@ impl Panels {
             for supernode in &part.supernodes {
                 let (width, below) = (supernode.width as usize, (supernode.rows_end - supernode.rows_start) as usize);
                 let source = block(supernode.source as usize);
-                let at = |row: usize, column: usize| source[column * (width + below) + row];
+                let stride = width + below;
                 for first in (0..width).step_by(WIDTH) {
                     let end = (first + WIDTH).min(width);
-                    push_inverse(first, end, &at, &mut values);
-                    for row in end..width + below {
-                        values.extend((first..end).map(|column| at(row, column)));
+                    push_inverse(first, end, &|row, column| source[column * stride + row], &mut values);
+                    // Below the block: row by row out of the columns.
+                    let rows = stride - end;
+                    let start = values.len();
+                    values.resize(start + rows * (end - first), 0.0);
+                    for (c, column) in (first..end).enumerate() {
+                        let from = &source[column * stride + end..(column + 1) * stride];
+                        let to = values[start..].iter_mut().skip(c).step_by(end - first);
+                        to.zip(from).for_each(|(to, from)| *to = *from);
                     }
                 }
             }
@@ -426,4 +427,86 @@ fn backward_panel<const W: usize, const FMA: bool>(
         }
     }
     own.copy_from_slice(&t);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three supernodes of 3, 11 and 6 columns; the first two are leaves, the last is their parent.
+    const BEGINS: [u32; 4] = [0, 3, 14, 20];
+    const ROWS: [&[u32]; 3] = [&[14, 16, 19], &[15, 16, 17, 18], &[]];
+
+    /// A factor with this pattern, column by column within each supernode, and the same as a dense matrix.
+    fn factor() -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let mut dense = vec![vec![0.0; 20]; 20];
+        let mut blocks = Vec::new();
+        for s in 0..3 {
+            let (begin, end) = (BEGINS[s] as usize, BEGINS[s + 1] as usize);
+            let rows: Vec<usize> = (begin..end).chain(ROWS[s].iter().map(|&row| row as usize)).collect();
+            let mut block = Vec::new();
+            for column in begin..end {
+                for &row in &rows {
+                    let value = if row == column { 2.0 } else { ((7 * row + 13 * column) % 11) as f64 / 11.0 - 0.5 };
+                    if row >= column {
+                        dense[row][column] = value;
+                    }
+                    block.push(value);
+                }
+            }
+            blocks.push(block);
+        }
+        (blocks, dense)
+    }
+
+    fn panels() -> (Panels, Vec<Vec<f64>>) {
+        let (blocks, dense) = factor();
+        let mut panels = Panels::new(&Supernodes { begins: &BEGINS, rows: &|s| ROWS[s] });
+        panels.fill(|s| &blocks[s]);
+        (panels, dense)
+    }
+
+    #[test]
+    fn panels_solve_what_the_dense_factor_multiplies() {
+        // b = L Lᵀ x for a known x; the portable kernel and the one for this machine must find x again.
+        let (mut panels, dense) = panels();
+        let x: Vec<Lanes> = (0..20).map(|i| [f64::from(i) - 7.0, 1.0 / (1.0 + f64::from(i)), -2.0, 0.0]).collect();
+        let weighted = |coefficients: &dyn Fn(usize) -> f64, x: &[Lanes]| -> Lanes {
+            (0..20).fold([0.0; 4], |sum, i| add_scaled::<false>(sum, coefficients(i), x[i]))
+        };
+        let half: Vec<Lanes> = (0..20).map(|i| weighted(&|k| dense[k][i], &x)).collect();
+        let b: Vec<Lanes> = (0..20).map(|i| weighted(&|k| dense[i][k], &half)).collect();
+        for is_portable in [false, true] {
+            for (i, b) in b.iter().enumerate() {
+                let place = panels.position()[i] as usize;
+                panels.unknowns_mut()[place] = *b;
+            }
+            if is_portable {
+                let part = &panels.parts[0];
+                Forward { part, x: &mut panels.x, top: &mut [] }.run::<false>();
+                Backward { part, x: &mut panels.x, top: &[] }.run::<false>();
+            } else {
+                panels.solve(false);
+            }
+            for (i, expected) in x.iter().enumerate() {
+                let found = panels.x[panels.position[i] as usize];
+                for lane in 0..4 {
+                    assert!((found[lane] - expected[lane]).abs() < 1e-11, "unknown {i}: {found:?} is not {expected:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn inverted_blocks_are_inverse() {
+        let (_, dense) = factor();
+        let mut values = Vec::new();
+        push_inverse(3, 11, &|row, column| dense[row][column], &mut values);
+        for i in 0..8 {
+            for j in 0..8 {
+                let product: f64 = (0..8).map(|k| dense[3 + i][3 + k] * values[8 * k + j]).sum();
+                assert!((product - f64::from(u8::from(i == j))).abs() < 1e-13);
+            }
+        }
+    }
 }

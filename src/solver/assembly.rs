@@ -18,8 +18,10 @@ const CHUNK_POINTS: usize = 1024;
 /// `Aᵀ` by rows: the right-hand side of each point as a sum over targets, in a fixed order.
 pub(super) struct Gather {
     pub(super) starts: Vec<usize>,
-    /// Target and coefficient.
-    pub(super) entries: Vec<(u32, f64)>,
+    /// The target of each entry.
+    pub(super) targets: Vec<u32>,
+    /// The coefficient of each entry.
+    pub(super) coefficients: Vec<f64>,
     /// Where the chunks of points begin, and the number of points.
     pub(super) bounds: Vec<usize>,
 }
@@ -32,15 +34,16 @@ impl Gather {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
-        let mut entries = vec![(0_u32, 0.0); starts[point_count]];
+        let mut targets = vec![0_u32; starts[point_count]];
+        let mut coefficients = vec![0.0; starts[point_count]];
         each_target(constraints, stiffness, |point, target, coefficient| {
             let place = &mut next[point as usize];
-            entries[*place] = (target, coefficient);
+            (targets[*place], coefficients[*place]) = (target, coefficient);
             *place += 1;
         });
         let mut bounds: Vec<usize> = (0..point_count).step_by(CHUNK_POINTS).collect();
         bounds.push(point_count);
-        Self { starts, entries, bounds }
+        Self { starts, targets, coefficients, bounds }
     }
 }
 

@@ -148,7 +148,7 @@ impl System {
 
     /// True if gathering right-hand sides is long enough to gain from more than one thread.
     pub(super) fn is_global_step_long(&self) -> bool {
-        self.gather.entries.len() >= PARALLEL_ENTRIES
+        self.gather.targets.len() >= PARALLEL_ENTRIES
     }
 
     /// Projects `points` onto every constraint, on the current rayon pool if `is_parallel`. Returns `½ Σ s ‖A x − p‖²` if
@@ -182,7 +182,9 @@ impl System {
         let work = |chunk: usize, sums: &mut [DVec3], _: &mut f64| {
             for (point, sum) in (gather.bounds[chunk]..).zip(sums) {
                 *sum = external.get(point).copied().unwrap_or_default();
-                for &(target, coefficient) in &gather.entries[gather.starts[point]..gather.starts[point + 1]] {
+                let entries = gather.starts[point]..gather.starts[point + 1];
+                for (&target, &coefficient) in gather.targets[entries.clone()].iter().zip(&gather.coefficients[entries])
+                {
                     *sum += coefficient * targets[target as usize];
                 }
                 if let Some(pull) = proximal.get(point) {
