@@ -2,6 +2,7 @@
 
 pub mod cholesky;
 pub mod lanes;
+mod nested_dissection;
 mod panels;
 pub mod simd;
 pub mod small;

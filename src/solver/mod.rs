@@ -379,7 +379,7 @@ impl Solver {
             self.constraints.compact();
             let inertia = if dynamics.mode == Mode::Dynamic { dynamics.inertia() } else { 0.0 };
             let previous = self.outdated_system.take();
-            self.system = Some(System::new(&self.constraints, self.points.len(), inertia, previous)?);
+            self.system = Some(System::new(&self.constraints, &self.points, inertia, previous)?);
         }
         Ok(())
     }

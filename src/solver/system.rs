@@ -78,14 +78,15 @@ pub(super) struct System {
 }
 
 impl System {
-    /// Assembles and factorises the system of `constraints` over `point_count` points. The analysis of `previous` is
+    /// Assembles and factorises the system of `constraints` over `points`. The analysis of `previous` is
     /// taken over if its pattern covers the new one. `inertia` (mass over the squared time step) is 0 in static mode.
     pub(super) fn new(
         constraints: &ConstraintSet,
-        point_count: usize,
+        points: &[DVec3],
         inertia: f64,
         previous: Option<Self>,
     ) -> Result<Self> {
+        let point_count = points.len();
         let stiffness: Vec<Vec<f64>> = constraints
             .batches()
             .map(|(batch, weights)| weights.iter().enumerate().map(|(slot, w)| w * batch.measure(slot)).collect())
@@ -105,7 +106,7 @@ impl System {
                     matrix = new_pattern(constraints, point_count, unknown_count)?;
                     fill(&mut matrix, constraints, &stiffness, point_count);
                 }
-                let analysis = Analysis::new(&matrix)?;
+                let analysis = Analysis::new(&matrix, points)?;
                 let factor = Factor::new(&analysis)?;
                 (analysis, factor)
             }
