@@ -272,7 +272,8 @@ impl Factor {
     /// within round-off, [`Self::is_singular`] says so and the factor is of no use.
     ///
     /// # Errors
-    /// Status `InvalidValue` if the matrix is not finite.
+    /// Status `InvalidValue` if the matrix is not finite; `Internal` if it is so singular that there is no factor at all,
+    /// which [`Self::is_singular`] says too.
     pub fn factorise(&mut self, analysis: &Analysis, matrix: &SymmetricMatrix) -> Result<()> {
         for (i, scale) in self.scale.iter_mut().enumerate() {
             *scale = 1.0 / matrix.diagonal(i).sqrt();
@@ -283,6 +284,7 @@ impl Factor {
                 scaled.push(matrix.values[k] * self.scale[j] * self.scale[matrix.rows[k] as usize]);
             }
         }
+        self.is_singular = false;
         if !scaled.iter().all(|value| value.is_finite()) {
             return Err(Error::new(Status::InvalidValue, "the weights are too far apart for the system to be finite"));
         }
@@ -306,6 +308,8 @@ impl Factor {
             MemStack::new(&mut scratch),
             Default::default(),
         );
+        // Several vanishing pivots can lead to numbers beyond all bounds, where faer gives up.
+        self.is_singular = outcome.is_err();
         outcome.map_err(|error| Error::new(Status::Internal, format!("factorisation failed: {error:?}")))?;
         // faer divides by the root of what it puts in the place of a vanishing pivot, but leaves the pivot's own quotient.
         let diagonal = |s: usize| {

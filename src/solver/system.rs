@@ -298,9 +298,9 @@ impl System {
             component.held_stiffness = *diagonal;
             *diagonal *= 2.0;
         }
-        self.factor.factorise(&self.analysis, &self.matrix)?;
+        let factorised = self.factor.factorise(&self.analysis, &self.matrix);
         if !self.factor.is_singular() {
-            return Ok(());
+            return factorised;
         }
         for component in &mut self.free_components {
             let diagonal = self.matrix.diagonal_mut(component.points[0] as usize);
