@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 use shapeop::constraints::types;
+use shapeop::problem::Acceleration;
 use shapeop::solver::{SolveOptions, Solver};
 
 struct Counting;
@@ -43,9 +44,11 @@ fn between_the_second_and_the_last_iteration_nothing_is_allocated() {
     let points: Vec<DVec3> = (0..n * n)
         .map(|i| DVec3::new(f64::from(i % n) + bump(i), f64::from(i / n) + bump(i + 3), bump(i + 5)))
         .collect();
-    for is_dynamic in [false, true] {
+    let accelerations = [Acceleration::None, Acceleration::Anderson, Acceleration::QuasiNewton];
+    for (is_dynamic, acceleration) in [false, true].into_iter().flat_map(|d| accelerations.map(|a| (d, a))) {
         let mut solver = Solver::new();
         solver.set_thread_count(1);
+        solver.set_acceleration(acceleration, 6).unwrap();
         solver.set_points(&points).unwrap();
         for info in types() {
             // Every type at its least number of indices, and as long as it may be.
@@ -71,7 +74,7 @@ fn between_the_second_and_the_last_iteration_nothing_is_allocated() {
             })
             .unwrap();
         assert_eq!(counts.len(), 20);
-        assert_eq!(counts[19] - counts[1], 0, "allocations in 18 iterations, dynamic: {is_dynamic}");
+        assert_eq!(counts[19] - counts[1], 0, "allocations in 18 iterations, dynamic: {is_dynamic}, {acceleration:?}");
         let before = allocation_count();
         solver.solve(20).unwrap();
         assert_eq!(allocation_count() - before, 0, "allocations in a second solve");

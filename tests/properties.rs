@@ -10,7 +10,7 @@ use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use shapeop::constraints::{Projection, TypeInfo, types};
-use shapeop::problem::Force;
+use shapeop::problem::{Acceleration, Force};
 use shapeop::solver::{SolveOptions, Solver};
 
 /// The lattice's numbers of points.
@@ -168,8 +168,9 @@ fn check(name: &str, cases: u32, law: impl Fn(u64) -> Result<(), TestCaseError>)
 }
 
 /// The largest relative rise of the energy in one iteration, over the iterations of one static solve or one time step.
-fn largest_rise(model: &Model, is_dynamic: bool, max_iterations: u32) -> f64 {
+fn largest_rise(model: &Model, is_dynamic: bool, max_iterations: u32, acceleration: Acceleration) -> f64 {
     let mut solver = model.solver(is_dynamic);
+    solver.set_acceleration(acceleration, 0).unwrap();
     let mut rise = 0.0_f64;
     let mut last = None;
     let options = SolveOptions { max_iterations, tolerance: 0.0, time_budget_seconds: 0.0 };
@@ -188,10 +189,12 @@ fn largest_rise(model: &Model, is_dynamic: bool, max_iterations: u32) -> f64 {
 
 #[test]
 fn the_energy_never_rises_with_nearest_projections() {
-    for is_dynamic in [false, true] {
+    let accelerations = [Acceleration::None, Acceleration::Anderson, Acceleration::QuasiNewton];
+    for (is_dynamic, acceleration) in [false, true].into_iter().flat_map(|d| accelerations.map(|a| (d, a))) {
         check("energy", 60, |seed| {
-            let rise = largest_rise(&model(seed, 0.5, |info| info.projection == Projection::Nearest), is_dynamic, 60);
-            prop_assert!(rise < 1e-13, "seed {seed}: the energy rose by {rise:.1e}, dynamic: {is_dynamic}");
+            let model = model(seed, 0.5, |info| info.projection == Projection::Nearest);
+            let rise = largest_rise(&model, is_dynamic, 60, acceleration);
+            prop_assert!(rise < 1e-13, "seed {seed}: rose by {rise:.1e}, dynamic: {is_dynamic}, {acceleration:?}");
             Ok(())
         });
     }
@@ -205,7 +208,7 @@ fn with_other_projections_the_rise_is_known() {
         for seed in 0..60 {
             // Without forces, whose fall would hide a rise, and until little else moves.
             let model = Model { force: DVec3::ZERO, ..model(seed, 1.0, |other| other.name == info.name) };
-            worst = worst.max(largest_rise(&model, false, 400));
+            worst = worst.max(largest_rise(&model, false, 400, Acceleration::None));
         }
         rises.insert(info.name, worst);
     }

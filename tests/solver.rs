@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 use shapeop::error::Status;
-use shapeop::problem::Force;
+use shapeop::problem::{Acceleration, Force};
 use shapeop::solver::{Outcome, SolveOptions, Solver};
 
 fn solver(points: &[[f64; 3]]) -> Solver {
@@ -301,6 +301,7 @@ fn stopping_rules_report_what_they_did() {
     assert_eq!(report.energy_after.to_bits(), energies.last().unwrap().to_bits());
 
     let mut cancelled = planar_grid(12);
+    cancelled.set_acceleration(Acceleration::None, 0).unwrap();
     cancelled.init().unwrap();
     let stop = |at: u32| {
         move |progress: &shapeop::solver::Progress<'_>| match progress.iteration {

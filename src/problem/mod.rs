@@ -19,6 +19,9 @@ use crate::error::{Error, Result, Status, finite};
 /// The version of the JSON form that this library writes and reads.
 pub const VERSION: u32 = 1;
 
+/// Iterations that acceleration remembers at most: far more than any problem gained from. Each costs two vectors.
+pub const MOST_MEMORY: u32 = 64;
+
 /// Whether the points keep their momentum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -87,7 +90,23 @@ pub struct Edit {
     pub scalars: Vec<f64>,
 }
 
-/// When to stop.
+/// How iterations are accelerated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Acceleration {
+    /// Quasi-Newton where a solve has stopping rules, none where it makes a given number of iterations.
+    #[default]
+    Automatic,
+    /// Not at all: every iteration is one local and one global step.
+    None,
+    /// Safeguarded Anderson acceleration.
+    Anderson,
+    /// L-BFGS with the matrix of the global step as initial Hessian, and a line search.
+    QuasiNewton,
+}
+
+/// When to stop, and how to get there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
@@ -100,11 +119,22 @@ pub struct Settings {
     pub time_budget_seconds: f64,
     /// The number of time steps in dynamic mode.
     pub steps: u32,
+    /// How iterations are accelerated.
+    pub acceleration: Acceleration,
+    /// Iterations that acceleration remembers, at most 64; 0: the method's default.
+    pub acceleration_memory: u32,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { max_iterations: 1000, tolerance: 1e-6, time_budget_seconds: 0.0, steps: 1 }
+        Self {
+            max_iterations: 1000,
+            tolerance: 1e-6,
+            time_budget_seconds: 0.0,
+            steps: 1,
+            acceleration: Acceleration::Automatic,
+            acceleration_memory: 0,
+        }
     }
 }
 
@@ -237,6 +267,11 @@ impl Problem {
             if finite(name, value)? < 0.0 {
                 return invalid(name, format!("expected at least 0, found {value}"));
             }
+        }
+        if settings.acceleration_memory > MOST_MEMORY {
+            let found = settings.acceleration_memory;
+            let reason = format!("expected 1 to {MOST_MEMORY}, or 0 for the default, found {found}");
+            return invalid("settings.acceleration_memory", reason);
         }
         let points: Vec<DVec3> = self.points.iter().copied().map(DVec3::from_array).collect();
         if let Some(i) = points.iter().position(|point| !point.is_finite()) {

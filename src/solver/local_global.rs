@@ -6,13 +6,15 @@ use std::time::Instant;
 use glam::DVec3;
 
 use super::Workspace;
+use super::acceleration::Accelerator;
 use super::system::System;
-use super::{Dynamics, Outcome, Progress, ProgressFn, Report, STALL_ITERATIONS, SolveOptions, Solver};
+use super::{Dynamics, Outcome, Progress, ProgressFn, Rejections, Report, STALL_ITERATIONS, SolveOptions, Solver};
 use crate::error::{Error, Result, Status};
-use crate::problem::Mode;
+use crate::problem::{Acceleration, Mode};
 
 impl Solver {
-    /// Static: so many iterations. Dynamic: one time step with so many iterations.
+    /// Static: so many iterations. Dynamic: one time step with so many iterations. They are the plain ones unless
+    /// [`Solver::set_acceleration`] asked for others.
     ///
     /// # Errors
     /// The solver was not initialised (`NotInitialised`); a force acts along a free motion (`Unbounded`); coordinates or
@@ -20,6 +22,14 @@ impl Solver {
     pub fn solve(&mut self, iterations: u32) -> Result<()> {
         self.run(|solver| {
             let mut clock = Clock::default();
+            if let Some(mut accelerator) = solver.begin_acceleration(Acceleration::None) {
+                let mut energy = solver.local_step(true, &mut clock);
+                for _ in 0..iterations {
+                    energy = solver.accelerated_step(&mut accelerator, energy, &mut clock).energy;
+                }
+                solver.accelerator = Some(accelerator);
+                return true;
+            }
             for _ in 0..iterations {
                 solver.local_step(false, &mut clock);
                 solver.global_step(&mut clock);
@@ -64,6 +74,7 @@ impl Solver {
             report.analysis_seconds = system.analysis_seconds;
             report.factorisation_seconds = system.factorisation_seconds;
         }
+        (report.ordering_count, report.factorisation_count) = (self.counts.orderings, self.counts.factorisations);
         Ok(report)
     }
 
@@ -133,21 +144,27 @@ impl Solver {
         let started = Instant::now();
         let mut clock = Clock::default();
         let diagonal = bounding_box_diagonal(&self.points);
+        let mut accelerator = self.begin_acceleration(Acceleration::QuasiNewton);
         let energy = self.local_step(true, &mut clock);
         let mut report = Report { energy_before: energy, energy_after: energy, ..Report::empty() };
         let (mut least_energy, mut least_move, mut stalled_for) = (energy, f64::INFINITY, 0);
         for iteration in 1..=options.max_iterations {
-            report.largest_move = self.global_step(&mut clock) / diagonal;
-            report.energy_after = self.local_step(true, &mut clock);
+            let step = match &mut accelerator {
+                Some(accelerator) => self.accelerated_step(accelerator, report.energy_after, &mut clock),
+                None => self.plain_step(&mut clock),
+            };
+            report.largest_move = step.largest_move / diagonal;
+            report.energy_after = step.energy;
             report.iterations = iteration;
+            report.evaluations = report.evaluations.saturating_add(step.evaluations);
             stalled_for += 1;
             if report.energy_after < least_energy || report.largest_move < least_move {
                 stalled_for = 0;
             }
             least_energy = least_energy.min(report.energy_after);
             least_move = least_move.min(report.largest_move);
-            let now =
-                Progress { iteration, energy: report.energy_after, largest_move: report.largest_move, solver: self };
+            let (energy, largest_move) = (report.energy_after, report.largest_move);
+            let now = Progress { iteration, evaluations: report.evaluations, energy, largest_move, solver: self };
             let outcome = if !report.is_finite() {
                 // The caller of this function refuses it and restores the points.
                 Some(Outcome::Stalled)
@@ -170,7 +187,55 @@ impl Solver {
             }
         }
         (report.local_seconds, report.global_seconds) = (clock.local_seconds, clock.global_seconds);
+        if let Some(accelerator) = &accelerator {
+            report.rejections = accelerator.rejections;
+        }
+        self.accelerator = accelerator;
         report
+    }
+
+    /// What accelerates the solve that begins, with an empty history; `automatic` is what `Automatic` means for it.
+    fn begin_acceleration(&mut self, automatic: Acceleration) -> Option<Accelerator> {
+        let wanted = match self.acceleration {
+            Acceleration::Automatic => automatic,
+            stated => stated,
+        };
+        let kept = self.accelerator.take().filter(|kept| kept.serves(wanted));
+        let mut accelerator = kept.or_else(|| Accelerator::new(wanted))?;
+        accelerator.reset(self.acceleration_memory, self.points.len());
+        Some(accelerator)
+    }
+
+    /// One iteration: the plain step. The local step at the current points was made.
+    fn plain_step(&mut self, clock: &mut Clock) -> Step {
+        let largest_move = self.global_step(clock);
+        Step { energy: self.local_step(true, clock), largest_move, evaluations: 1 }
+    }
+
+    /// One iteration from points of `energy`, where the local step was made: to the first point that `accelerator` proposes
+    /// and accepts, else the plain step.
+    fn accelerated_step(&mut self, accelerator: &mut Accelerator, energy: f64, clock: &mut Clock) -> Step {
+        self.solve_for_plain_step(clock);
+        let started = Instant::now();
+        let pool = self.pool_if(|_| accelerator.is_long());
+        let has_direction = self.system.as_mut().is_some_and(|system| {
+            let (plain, image) = system.solution_and_image(&self.points);
+            match pool {
+                Some(pool) => pool.install(|| accelerator.propose(&self.points, energy, plain, image, true)),
+                None => accelerator.propose(&self.points, energy, plain, image, false),
+            }
+        });
+        clock.global_seconds += started.elapsed().as_secs_f64();
+        let mut evaluations = 0;
+        while has_direction && accelerator.place_trial(&mut self.points) {
+            let found = self.local_step(true, clock);
+            evaluations += 1;
+            if accelerator.accepts(found) {
+                return Step { energy: found, largest_move: accelerator.largest_move(&self.points), evaluations };
+            }
+        }
+        let largest_move = self.take_plain_step();
+        Step { energy: self.local_step(true, clock), largest_move, evaluations: evaluations + 1 }
     }
 
     /// Projects; returns the energy at the current points if it is wanted, else 0.
@@ -187,22 +252,33 @@ impl Solver {
         if wants_energy { energy + self.external_energy() } else { 0.0 }
     }
 
-    /// Solves for new points; returns the largest move.
+    /// Solves for new points and moves there; returns the largest move.
     fn global_step(&mut self, clock: &mut Clock) -> f64 {
+        self.solve_for_plain_step(clock);
+        self.take_plain_step()
+    }
+
+    /// Solves for new points, which the system keeps in hand.
+    fn solve_for_plain_step(&mut self, clock: &mut Clock) {
         let started = Instant::now();
         let pool = self.pool_if(System::is_global_step_long);
-        let Some(system) = &mut self.system else { return 0.0 };
+        let Some(system) = &mut self.system else { return };
         let (points, external) = (&self.points, &self.workspace.external);
-        let new = match pool {
+        match pool {
             Some(pool) => pool.install(|| system.global_step(points, external, true)),
             None => system.global_step(points, external, false),
-        };
+        }
+        clock.global_seconds += started.elapsed().as_secs_f64();
+    }
+
+    /// Moves to the points in hand; returns the largest move.
+    fn take_plain_step(&mut self) -> f64 {
+        let Some(system) = &self.system else { return 0.0 };
         let mut largest_move = 0.0_f64;
-        for (point, new) in self.points.iter_mut().zip(new) {
+        for (point, new) in self.points.iter_mut().zip(system.solution()) {
             largest_move = largest_move.max(point.distance_squared(*new));
             *point = *new;
         }
-        clock.global_seconds += started.elapsed().as_secs_f64();
         largest_move.sqrt()
     }
 
@@ -233,17 +309,30 @@ impl Report {
     fn empty() -> Self {
         Self {
             iterations: 0,
+            evaluations: 0,
+            rejections: Rejections::default(),
             energy_before: 0.0,
             energy_after: 0.0,
             largest_move: 0.0,
             outcome: Outcome::IterationLimit,
             message: String::new(),
+            ordering_count: 0,
+            factorisation_count: 0,
             analysis_seconds: 0.0,
             factorisation_seconds: 0.0,
             local_seconds: 0.0,
             global_seconds: 0.0,
         }
     }
+}
+
+/// What one iteration did.
+struct Step {
+    /// The energy at the new points.
+    energy: f64,
+    /// The largest move of a point, in model units.
+    largest_move: f64,
+    evaluations: u32,
 }
 
 /// Where the time of a call went.
@@ -259,4 +348,60 @@ fn bounding_box_diagonal(points: &[DVec3]) -> f64 {
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let diagonal = low.distance(high);
     if diagonal > 0.0 && diagonal.is_finite() { diagonal } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Along the plain step `f` the energy falls with the slope `−fᵀ N f`, whatever makes the system definite: inertia,
+    /// held components, proximal steps, unknown means, or points in no constraint.
+    #[test]
+    fn the_image_of_the_plain_step_is_minus_the_gradient() {
+        let bend = |i: u32| 0.2 * DVec3::new(0.0, f64::from(i * 7 % 5), f64::from(i * 3 % 4));
+        let rest: Vec<DVec3> =
+            (0..24).map(|i| DVec3::new(f64::from(i), f64::from(2 * (i % 2)), 0.0) + bend(i)).collect();
+        let cases: [(&str, &[(&str, u32)]); 4] = [
+            ("held", &[("Plane", 4), ("Closeness", 1)]),
+            ("free", &[("Plane", 4)]),
+            ("weak", &[("Bending", 4)]),
+            ("long", &[("Line", 17), ("EdgeStrain", 2), ("Closeness", 1)]),
+        ];
+        for ((name, types), is_dynamic) in cases.into_iter().flat_map(|case| [(case, false), (case, true)]) {
+            let mut solver = Solver::new();
+            solver.set_points(&rest).unwrap();
+            for (type_name, k) in types {
+                for i in 0..=20 - k {
+                    let ids: Vec<u32> = (i..i + k).collect();
+                    solver.add_constraint(type_name, &ids, 0.5 + f64::from(i % 3)).unwrap();
+                }
+            }
+            let moved: Vec<DVec3> = rest.iter().zip(0..).map(|(point, i)| *point + bend(i + 3)).collect();
+            solver.set_points(&moved).unwrap();
+            match is_dynamic {
+                true => solver.init_dynamic(1.0, 1.0, 0.7).unwrap(),
+                false => solver.init().unwrap(),
+            }
+            solver.solve(0).unwrap();
+            let mut clock = Clock::default();
+            solver.local_step(true, &mut clock);
+            solver.solve_for_plain_step(&mut clock);
+            let start = solver.points.clone();
+            let (plain, image) = solver.system.as_mut().unwrap().solution_and_image(&start);
+            let step: Vec<DVec3> = plain.iter().zip(&start).map(|(plain, x)| *plain - *x).collect();
+            let slope = -step.iter().zip(image).map(|(step, image)| step.dot(*image)).sum::<f64>();
+            let mut energy_at = |h: f64| {
+                for ((point, x), step) in solver.points.iter_mut().zip(&start).zip(&step) {
+                    *point = *x + h * *step;
+                }
+                solver.energy()
+            };
+            let h = 1e-5;
+            let found = (energy_at(h) - energy_at(-h)) / (2.0 * h);
+            assert!(
+                (found - slope).abs() < 1e-6 * slope.abs(),
+                "{name}, dynamic: {is_dynamic}: {found} is not {slope}"
+            );
+        }
+    }
 }

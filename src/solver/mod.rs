@@ -5,14 +5,18 @@
 //! inertia `M = (m/δ₀²) I` and `external` is `M y`, `y` being where momentum alone would take the points. Either way an
 //! iteration with nearest projections never raises the energy. Sources: Bouaziz et al. 2012 and 2014; Deuss et al. 2015.
 
+mod acceleration;
+mod anderson;
 mod assembly;
 mod free_components;
+mod history;
 mod local_global;
 mod parallel;
+mod quasi_newton;
 mod report;
 mod system;
 
-pub use report::{Outcome, Progress, Report, SolveOptions};
+pub use report::{Outcome, Progress, Rejections, Report, SolveOptions};
 
 use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
@@ -21,8 +25,9 @@ use glam::DVec3;
 
 use crate::constraints::{ConstraintId, ConstraintSet, ConstraintView, Edited, NewConstraints};
 use crate::error::{Error, Result, Status, finite};
-use crate::problem::{Force, ForceId, ForceSet, Mode, Problem};
-use system::System;
+use crate::problem::{Acceleration, Force, ForceId, ForceSet, Mode, Problem};
+use acceleration::Accelerator;
+use system::{System, SystemCounts};
 
 /// Iterations without a lower energy or a smaller largest move after which a solve is called stalled.
 pub const STALL_ITERATIONS: u32 = 100;
@@ -43,6 +48,13 @@ pub struct Solver {
     /// The last system if it may serve for the pattern of the next.
     outdated_system: Option<System>,
     workspace: Workspace,
+    acceleration: Acceleration,
+    /// Iterations that acceleration remembers; 0: the method's default.
+    acceleration_memory: u32,
+    /// Kept between accelerated solves for its memory alone.
+    accelerator: Option<Accelerator>,
+    /// Orderings and numeric factorisations made so far.
+    counts: SystemCounts,
     thread_count: usize,
     pool: Option<Arc<rayon::ThreadPool>>,
 }
@@ -113,6 +125,7 @@ impl Solver {
     pub fn from_problem(problem: &Problem) -> Result<Self> {
         let (points, constraints, forces) = problem.assemble()?;
         let mut solver = Self { points, constraints, forces, ..Self::default() };
+        solver.set_acceleration(problem.settings.acceleration, problem.settings.acceleration_memory)?;
         match problem.mode {
             Mode::Static => solver.init()?,
             Mode::Dynamic => solver.init_dynamic(problem.masses, problem.damping, problem.timestep)?,
@@ -309,6 +322,21 @@ impl Solver {
         }
     }
 
+    /// Sets how the following solves are accelerated, and how many iterations are remembered for that (at most 64; 0: the
+    /// method's default). `Automatic`, which a new solver has, is `None` in [`Solver::solve`] and `QuasiNewton` in
+    /// [`Solver::solve_until`]. Each call, and so each time step, begins with an empty history.
+    ///
+    /// # Errors
+    /// The memory is beyond its range.
+    pub fn set_acceleration(&mut self, acceleration: Acceleration, memory: u32) -> Result<()> {
+        acceleration::check_memory(memory)?;
+        if (acceleration, memory) != (self.acceleration, self.acceleration_memory) {
+            self.accelerator = None;
+        }
+        (self.acceleration, self.acceleration_memory) = (acceleration, memory);
+        Ok(())
+    }
+
     /// The violation of every constraint id at the current points, each in its type's unit; 0 for removed ones.
     pub fn violations(&self) -> Vec<f64> {
         self.constraints.violations(&self.points)
@@ -379,7 +407,7 @@ impl Solver {
             self.constraints.compact();
             let inertia = if dynamics.mode == Mode::Dynamic { dynamics.inertia() } else { 0.0 };
             let previous = self.outdated_system.take();
-            self.system = Some(System::new(&self.constraints, &self.points, inertia, previous)?);
+            self.system = Some(System::new(&self.constraints, &self.points, inertia, previous, &mut self.counts)?);
         }
         Ok(())
     }

@@ -60,8 +60,14 @@ impl Outcome {
 /// What a solve found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Iterations made.
+    /// Iterations made: steps to new points.
     pub iterations: u32,
+    /// Evaluations made: a local step at points that were tried, whether they were kept or not, and the global step from
+    /// there where they were. Without acceleration one per iteration. The local step at the points of the start is not
+    /// counted.
+    pub evaluations: u32,
+    /// What acceleration tried in vain.
+    pub rejections: Rejections,
     /// The energy at the points that the iterations started from.
     pub energy_before: f64,
     /// The energy at the points that were reached.
@@ -72,6 +78,11 @@ pub struct Report {
     pub outcome: Outcome,
     /// More about an outcome of [`Outcome::Unbounded`]: the point or component that is free to move. Else empty.
     pub message: String,
+    /// Orderings (with the analysis of the pattern) made since the solver was created.
+    pub ordering_count: u32,
+    /// Numeric factorisations made since the solver was created, those of singular matrices that a remedy followed
+    /// included.
+    pub factorisation_count: u32,
     /// Seconds spent on the ordering and the pattern of the factor, when the system in use was made.
     pub analysis_seconds: f64,
     /// Seconds spent on the factor's numbers, when the system in use was made.
@@ -82,11 +93,29 @@ pub struct Report {
     pub global_seconds: f64,
 }
 
+/// How often acceleration was held back, by cause.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rejections {
+    /// Evaluations of points whose energy was higher than before, or not as much lower as the line search asks for.
+    pub energy_rose: u32,
+    /// Evaluations of points whose energy was not finite.
+    pub not_finite: u32,
+    /// Iterations that left out a part of the history: changes that others span (Anderson), or a move along which the
+    /// energy bends down (quasi-Newton).
+    pub ill_conditioned: u32,
+    /// Directions that were not tried, as the energy would rise along them; all of the history was forgotten then.
+    pub not_descent: u32,
+    /// Directions that were given up, as no length tried along them was accepted.
+    pub line_search: u32,
+}
+
 /// What a progress function sees after every iteration.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<'a> {
     /// Iterations made so far, from 1.
     pub iteration: u32,
+    /// Evaluations made so far.
+    pub evaluations: u32,
     /// The energy at the current points.
     pub energy: f64,
     /// The largest move of a point in this iteration, relative to the bounding-box diagonal.

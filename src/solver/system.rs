@@ -51,6 +51,13 @@ struct Chunk {
     end_slot: usize,
 }
 
+/// What was made since a solver was created.
+#[derive(Clone, Copy, Default)]
+pub(super) struct SystemCounts {
+    pub(super) orderings: u32,
+    pub(super) factorisations: u32,
+}
+
 /// The system of the global step, with the memory that an iteration needs.
 pub(super) struct System {
     point_count: usize,
@@ -73,6 +80,9 @@ pub(super) struct System {
     free_components: Vec<FreeComponent>,
     /// The pull of the proximal step on each point; empty where none is needed.
     proximal: Vec<f64>,
+    /// What [`Self::solution_and_image`] works on, one entry per unknown once it was called.
+    change: Vec<DVec3>,
+    image: Vec<DVec3>,
     pub(super) analysis_seconds: f64,
     pub(super) factorisation_seconds: f64,
 }
@@ -85,6 +95,7 @@ impl System {
         points: &[DVec3],
         inertia: f64,
         previous: Option<Self>,
+        counts: &mut SystemCounts,
     ) -> Result<Self> {
         let point_count = points.len();
         let stiffness: Vec<Vec<f64>> = constraints
@@ -107,6 +118,7 @@ impl System {
                     fill(&mut matrix, constraints, &stiffness, point_count);
                 }
                 let analysis = Analysis::new(&matrix, points)?;
+                counts.orderings = counts.orderings.saturating_add(1);
                 let factor = Factor::new(&analysis)?;
                 (analysis, factor)
             }
@@ -132,12 +144,14 @@ impl System {
             free_components: Vec::new(),
             proximal: Vec::new(),
             stiffness,
+            change: Vec::new(),
+            image: Vec::new(),
             analysis_seconds,
             factorisation_seconds: 0.0,
         };
         system.cut_into_chunks(constraints);
         let started = Instant::now();
-        system.make_definite(constraints, inertia)?;
+        system.make_definite(constraints, inertia, counts)?;
         system.factorisation_seconds = started.elapsed().as_secs_f64();
         Ok(system)
     }
@@ -176,8 +190,8 @@ impl System {
     }
 
     /// Solves for new points from the last projections, the `external` terms of the right-hand side (empty: none) and
-    /// the current `points`, which the remedies for singular systems refer to. The result has one entry per point.
-    pub(super) fn global_step(&mut self, points: &[DVec3], external: &[DVec3], is_parallel: bool) -> &[DVec3] {
+    /// the current `points`, which the remedies for singular systems refer to; [`Self::solution`] then has them.
+    pub(super) fn global_step(&mut self, points: &[DVec3], external: &[DVec3], is_parallel: bool) {
         let n = self.point_count;
         let (gather, targets, proximal) = (&self.gather, &self.targets, &self.proximal);
         let work = |chunk: usize, sums: &mut [DVec3], _: &mut f64| {
@@ -196,7 +210,34 @@ impl System {
         for_parts(&gather.bounds, &mut self.solution[..n], &mut self.gather_results, is_parallel, &work);
         self.solution[n..].fill(DVec3::ZERO);
         self.solve_in_place(points, is_parallel);
-        &self.solution[..n]
+    }
+
+    /// The new points of the last global step.
+    pub(super) fn solution(&self) -> &[DVec3] {
+        &self.solution[..self.point_count]
+    }
+
+    /// The new points of the last global step from `points`, and `N` times the change to them: minus the gradient of the
+    /// energy at `points` (with nearest projections).
+    pub(super) fn solution_and_image(&mut self, points: &[DVec3]) -> (&[DVec3], &[DVec3]) {
+        let n = self.point_count;
+        self.change.clear();
+        self.change.extend(self.solution.iter().zip(points).map(|(new, point)| *new - *point));
+        self.change.resize(self.matrix.dimension(), DVec3::ZERO);
+        self.image.resize(self.matrix.dimension(), DVec3::ZERO);
+        if self.matrix.dimension() > n {
+            // The unknown means follow the points: their rows of the product vanish. They do not meet each other.
+            self.matrix.multiply(&self.change, &mut self.image);
+            for i in n..self.matrix.dimension() {
+                self.change[i] = -self.image[i] / self.matrix.diagonal(i);
+            }
+        }
+        self.matrix.multiply(&self.change, &mut self.image);
+        for component in self.free_components.iter().filter(|component| component.held_stiffness > 0.0) {
+            let held = component.points[0] as usize;
+            self.image[held] -= component.held_stiffness * self.change[held];
+        }
+        (&self.solution[..n], &self.image[..n])
     }
 
     /// `½ Σ s ‖A x − P(x)‖²` at any points, without touching the iteration's memory.
@@ -276,7 +317,7 @@ impl System {
     }
 
     /// Adds the inertia, or the remedies for a singular matrix, and factorises.
-    fn make_definite(&mut self, constraints: &ConstraintSet, inertia: f64) -> Result<()> {
+    fn make_definite(&mut self, constraints: &ConstraintSet, inertia: f64, counts: &mut SystemCounts) -> Result<()> {
         for i in self.point_count..self.matrix.dimension() {
             if self.matrix.diagonal(i) == 0.0 {
                 *self.matrix.diagonal_mut(i) = 1.0;
@@ -287,7 +328,7 @@ impl System {
             for i in 0..self.point_count {
                 *self.matrix.diagonal_mut(i) += inertia;
             }
-            return self.factor.factorise(&self.analysis, &self.matrix);
+            return self.factorise(counts);
         }
         for &point in &self.unconstrained {
             *self.matrix.diagonal_mut(point as usize) = 1.0;
@@ -298,7 +339,7 @@ impl System {
             component.held_stiffness = *diagonal;
             *diagonal *= 2.0;
         }
-        let factorised = self.factor.factorise(&self.analysis, &self.matrix);
+        let factorised = self.factorise(counts);
         if !self.factor.is_singular() {
             return factorised;
         }
@@ -315,6 +356,11 @@ impl System {
         for (i, pull) in self.proximal.iter().enumerate() {
             *self.matrix.diagonal_mut(i) += pull;
         }
+        self.factorise(counts)
+    }
+
+    fn factorise(&mut self, counts: &mut SystemCounts) -> Result<()> {
+        counts.factorisations = counts.factorisations.saturating_add(1);
         self.factor.factorise(&self.analysis, &self.matrix)
     }
 
