@@ -163,6 +163,28 @@ typedef enum shapeop_outcome {
     SO_OUTCOME_UNBOUNDED = 5,
 } shapeop_outcome;
 
+/**
+ * How iterations are accelerated: see `shapeop_setAcceleration`.
+ */
+typedef enum shapeop_acceleration {
+    /**
+     * Not at all: every iteration is one local and one global step.
+     */
+    SO_ACCELERATION_NONE = 0,
+    /**
+     * Safeguarded Anderson acceleration.
+     */
+    SO_ACCELERATION_ANDERSON = 1,
+    /**
+     * L-BFGS with the matrix of the global step as initial Hessian, and a line search.
+     */
+    SO_ACCELERATION_QUASI_NEWTON = 2,
+    /**
+     * The default: none in `shapeop_solve`, quasi-Newton in `shapeop_solveUntil`.
+     */
+    SO_ACCELERATION_AUTOMATIC = 3,
+} shapeop_acceleration;
+
 #if !defined(SHAPEOP_COMPAT_API_H)
 /**
  * A solver. What points to it is no address but a small integer, a handle.
@@ -343,9 +365,42 @@ typedef struct shapeop_solve_report {
      */
     double local_seconds;
     /**
-     * Seconds spent on right-hand sides and linear solves in this call.
+     * Seconds spent on right-hand sides, linear solves and acceleration in this call.
      */
     double global_seconds;
+    /**
+     * Evaluations made: a local step at points that were tried, whether they were kept or not, and the global step from
+     * there where they were. Without acceleration one per iteration; the first local step is not counted.
+     */
+    unsigned int evaluations;
+    /**
+     * Evaluations of points whose energy was higher than before, or not as much lower as the line search asks for.
+     */
+    unsigned int rejected_energy_rose;
+    /**
+     * Evaluations of points whose energy was not finite.
+     */
+    unsigned int rejected_not_finite;
+    /**
+     * Iterations in which acceleration left out a part of its history as ill-conditioned.
+     */
+    unsigned int rejected_ill_conditioned;
+    /**
+     * Directions of acceleration that were not tried, as the energy would rise along them.
+     */
+    unsigned int rejected_not_descent;
+    /**
+     * Directions of acceleration that were given up, as no step along them was accepted: the line search failed.
+     */
+    unsigned int rejected_line_search;
+    /**
+     * Orderings (with the analysis of the matrix's pattern) made since the solver was created.
+     */
+    unsigned int ordering_count;
+    /**
+     * Numeric factorisations made since the solver was created.
+     */
+    unsigned int factorisation_count;
 } shapeop_solve_report;
 
 #ifdef __cplusplus
@@ -403,6 +458,7 @@ SHAPEOP_API int shapeop_initDynamic(struct ShapeOpSolver *op, double masses, dou
 
 /**
  * Static: so many local/global iterations from the current points. Dynamic: one time step with so many iterations.
+ * They are the plain ones unless `shapeop_setAcceleration` asked for others.
  * Changes since the last call, of constraints too, take effect. Returns 0, or 1 with the points as before if the
  * solver was not initialised, if a force acts along a motion that no constraint resists, or if the numbers became too
  * large.
@@ -426,6 +482,14 @@ SHAPEOP_API void shapeop_setDamping(struct ShapeOpSolver *op, double damping);
  * are the same bits for any number.
  */
 SHAPEOP_API enum shapeop_err shapeop_setThreadCount(struct ShapeOpSolver *op, int nb_threads);
+
+/**
+ * Sets how the following solves are accelerated: `kind` is a `shapeop_acceleration`, `memory` the number of iterations
+ * that are remembered for it, at most 64; 0: the method's default. Accelerated solves take far fewer iterations to the
+ * same energy, and an accelerated step never raises it; the iterates are others than without. Every call, and so every
+ * time step, begins anew: nothing is remembered from call to call. A refused call changes nothing.
+ */
+SHAPEOP_API enum shapeop_err shapeop_setAcceleration(struct ShapeOpSolver *op, int kind, unsigned int memory);
 
 /**
  * Replaces the positions: `points` holds `x0 y0 z0 x1 ...` in model units. Rest states, targets and velocities stay.
@@ -629,10 +693,10 @@ SHAPEOP_API const char *shapeop_constraintIndexName(int index, int index_positio
 SHAPEOP_API enum shapeop_err shapeop_defaultSolveOptions(struct shapeop_solve_options *options);
 
 /**
- * Iterates until `options` (null: the defaults) say to stop; in dynamic mode within one time step. `progress` may be
- * null; it is called with `user` after every iteration. While it runs, reading calls on `op` from it answer with the
- * current iterate, and all other calls are refused as busy. `report` is null, or its `struct_size` is set; it is
- * written on success.
+ * Iterates until `options` (null: the defaults) say to stop; in dynamic mode within one time step. Iterations are
+ * accelerated unless `shapeop_setAcceleration` said otherwise. `progress` may be null; it is called with `user` after
+ * every iteration. While it runs, reading calls on `op` from it answer with the current iterate, and all other calls
+ * are refused as busy. `report` is null, or its `struct_size` is set; it is written on success.
  *
  * A force along a motion that no constraint resists is the outcome `SO_OUTCOME_UNBOUNDED` of a successful call.
  *

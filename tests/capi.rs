@@ -102,6 +102,7 @@ fn bad_handles_are_refused_by_every_function() {
         assert_eq!(shapeop_removeConstraint(bad, 0), SO_INVALID_HANDLE);
         assert_eq!(shapeop_removeForce(bad, 0), SO_INVALID_HANDLE);
         assert_eq!(shapeop_setThreadCount(bad, 1), SO_INVALID_HANDLE);
+        assert_eq!(shapeop_setAcceleration(bad, 0, 0), SO_INVALID_HANDLE);
         for count in [
             shapeop_pointCount(bad),
             shapeop_constraintCount(bad),
@@ -366,6 +367,7 @@ extern "C" fn read_everything(progress: *const shapeop_progress, user: *mut c_vo
     assert_eq!(shapeop_removeConstraint(abi.0, 0), SO_BUSY);
     assert_eq!(shapeop_removeForce(abi.0, 0), SO_BUSY);
     assert_eq!(shapeop_setThreadCount(abi.0, 2), SO_BUSY);
+    assert_eq!(shapeop_setAcceleration(abi.0, 1, 0), SO_BUSY);
     shapeop_delete(abi.0);
     assert!(abi.message().contains("busy"));
     // Another solver is not, not even inside a callback of its own, from which the first can still be read.
@@ -392,6 +394,7 @@ struct Seen {
 fn the_callback_reads_the_current_iterate_and_can_cancel() {
     let abi = warped();
     abi.set_points(&WARPED.map(|c| 2.0 * c + c * c));
+    assert_eq!(shapeop_setAcceleration(abi.0, 0, 0), SO_SUCCESS);
     assert_eq!(abi.init(), 0);
     let mut seen = Seen { op: abi.0, iterations: Vec::new(), points: Vec::new(), stop_at: 3 };
     let mut found = report();
@@ -614,6 +617,7 @@ fn shorter_structs_mean_defaults_and_longer_ones_must_ask_for_nothing_more() {
     for (size, is_good) in [
         (offset_of!(shapeop_solve_report, energy_before), true),
         (offset_of!(shapeop_solve_report, analysis_seconds), true),
+        (offset_of!(shapeop_solve_report, evaluations), true),
         (size_of::<shapeop_solve_report>(), true),
         (size_of::<shapeop_solve_report>() + 8, true),
         (4096, true),
@@ -710,6 +714,92 @@ fn pointers_and_counts_are_checked() {
     }
     assert_eq!(shapeop_setThreadCount(abi.0, 2), SO_SUCCESS);
     assert_eq!((abi.points(), shapeop_constraintCount(abi.0)), (WARPED.to_vec(), 5));
+}
+
+/// A grid of `n × n` warped quads, each with a plane, every corner with a closeness of weight 0.05.
+fn warped_grid(n: i32) -> Abi {
+    let height = |i: i32| f64::from(i * 7919 % 101) / 101.0;
+    let points: Vec<f64> =
+        (0..n * n).flat_map(|i| [f64::from(i % n), f64::from(i / n), f64::from(i / n) * 0.2 + height(i)]).collect();
+    let abi = Abi::with_points(&points);
+    for corner in (0..n * (n - 1)).filter(|i| i % n + 1 < n) {
+        abi.add("Plane", &[corner, corner + 1, corner + n + 1, corner + n], 1.0);
+    }
+    for i in 0..n * n {
+        abi.add("Closeness", &[i], 0.05);
+    }
+    assert_eq!(abi.init(), 0);
+    abi
+}
+
+#[test]
+fn acceleration_is_set_by_number_and_what_is_none_is_refused() {
+    let abi = warped_grid(8);
+    let start = abi.points();
+    for (kind, memory, message) in [
+        (-1, 0, "kind: expected a shapeop_acceleration, 0 to 3, found -1"),
+        (4, 0, "kind: expected a shapeop_acceleration, 0 to 3, found 4"),
+        (c_int::MAX, 65, "kind: expected a shapeop_acceleration, 0 to 3, found 2147483647"),
+        (1, 65, "memory: expected 1 to 64, or 0 for the default, found 65"),
+        (0, u32::MAX, "memory: expected 1 to 64, or 0 for the default, found 4294967295"),
+    ] {
+        assert_eq!(shapeop_setAcceleration(abi.0, kind, memory), SO_INVALID_VALUE);
+        assert_eq!(abi.message(), message);
+    }
+    // What was refused changed nothing: solve is plain, and the same as none.
+    let solved = |kind: Option<shapeop_acceleration>| {
+        abi.set_points(&start);
+        if let Some(kind) = kind {
+            assert_eq!(shapeop_setAcceleration(abi.0, kind as c_int, 0), SO_SUCCESS);
+        }
+        assert_eq!(abi.solve(20), 0);
+        (abi.points(), abi.energy().1)
+    };
+    let plain = solved(None);
+    assert!(solved(Some(shapeop_acceleration::SO_ACCELERATION_NONE)) == plain);
+    assert!(solved(Some(shapeop_acceleration::SO_ACCELERATION_AUTOMATIC)) == plain);
+    for kind in [shapeop_acceleration::SO_ACCELERATION_ANDERSON, shapeop_acceleration::SO_ACCELERATION_QUASI_NEWTON] {
+        let (_, energy) = solved(Some(kind));
+        assert!(energy < plain.1, "{kind:?}: {energy:e} is not below {:e}", plain.1);
+    }
+}
+
+#[test]
+fn the_report_counts_evaluations_rejections_and_factorisations() {
+    let abi = warped_grid(8);
+    let start = abi.points();
+    let run = |kind: shapeop_acceleration| {
+        abi.set_points(&start);
+        assert_eq!(shapeop_setAcceleration(abi.0, kind as c_int, 6), SO_SUCCESS);
+        let (code, report) = abi.solve_until(60);
+        assert_eq!(code, SO_SUCCESS);
+        report
+    };
+    let rejected = |report: &shapeop_solve_report| report.rejected_energy_rose + report.rejected_not_finite;
+    let plain = run(shapeop_acceleration::SO_ACCELERATION_NONE);
+    assert_eq!((plain.iterations, plain.evaluations, rejected(&plain)), (60, 60, 0));
+    assert_eq!((plain.rejected_ill_conditioned, plain.rejected_not_descent, plain.rejected_line_search), (0, 0, 0));
+    for kind in [shapeop_acceleration::SO_ACCELERATION_ANDERSON, shapeop_acceleration::SO_ACCELERATION_QUASI_NEWTON] {
+        let report = run(kind);
+        // Every iteration ends with an evaluation that is kept.
+        assert_eq!(report.evaluations, report.iterations + rejected(&report), "{kind:?}");
+        assert!(report.energy_after < plain.energy_after, "{kind:?}");
+    }
+
+    // Moving a target and points costs nothing, a weight one factorisation, a constraint within the pattern no ordering.
+    let closeness = 7 * 7;
+    let counts = || {
+        let (code, report) = abi.solve_until(1);
+        assert_eq!(code, SO_SUCCESS);
+        (report.ordering_count, report.factorisation_count)
+    };
+    assert_eq!(counts(), (1, 1));
+    abi.set_points(&start);
+    assert_eq!((abi.edit("Closeness", closeness, &[0.0, 0.0, 1.0]), counts()), (SO_SUCCESS, (1, 1)));
+    assert_eq!((shapeop_setWeight(abi.0, closeness, 2.0), counts()), (SO_SUCCESS, (1, 2)));
+    assert_eq!((shapeop_removeConstraint(abi.0, 0), counts()), (SO_SUCCESS, (1, 3)));
+    assert_eq!((abi.add("Plane", &[0, 1, 9, 8], 1.0) > 0, counts()), (true, (1, 4)));
+    assert_eq!((abi.add("EdgeStrain", &[0, 63], 1.0) > 0, counts()), (true, (2, 5)));
 }
 
 #[test]

@@ -78,6 +78,7 @@ enum Call {
     SetTimeStep(Op, f64),
     SetDamping(Op, f64),
     SetThreadCount(Op, c_int),
+    SetAcceleration(Op, c_int, u32),
     AddConstraint(Op, Option<CString>, Array<c_int>, f64),
     /// Type, ids, counts, weights, scalars, number of sets, flags, whether ids are wanted.
     AddConstraints(Op, Option<CString>, Array<c_int>, Array<c_int>, Array<f64>, Array<f64>, c_int, u32, bool),
@@ -220,6 +221,8 @@ fn call() -> impl Strategy<Value = Call> {
         1 => (op(), number()).prop_map(|(o, x)| Call::SetDamping(o, x)),
         1 => (op(), prop_oneof![0..3, integer().prop_filter("few threads", |n| !(3..=1024).contains(n))])
             .prop_map(|(o, n)| Call::SetThreadCount(o, n)),
+        2 => (op(), prop_oneof![9 => 0..4, 1 => integer()], prop_oneof![9 => 0..10_u32, 1 => any::<u32>()])
+            .prop_map(|(o, kind, memory)| Call::SetAcceleration(o, kind, memory)),
         14 => (op(), fitting(), 0.0..10.0_f64).prop_map(|(o, (t, i), w)| Call::AddConstraint(o, t, i, w)),
         8 => (op(), 0..99_usize, scalars()).prop_map(|(o, pick, s)| Call::EditOwn(o, pick, s)),
         4 => (op(), type_name(), indices(), number()).prop_map(|(o, t, i, w)| Call::AddConstraint(o, t, i, w)),
@@ -402,6 +405,7 @@ fn make(call: &Call, own: &mut Own) -> Result<bool, String> {
                 says(at(op))
             }
             Call::SetThreadCount(op, count) => refused(shapeop_setThreadCount(at(op), *count)),
+            Call::SetAcceleration(op, kind, memory) => refused(shapeop_setAcceleration(at(op), *kind, *memory)),
             Call::AddConstraint(op, type_name, ids, weight) => {
                 let ids_data = ids.data().cast_mut();
                 let id = shapeop_addConstraint(at(op), name(type_name), ids_data, ids.count(), *weight);
@@ -531,7 +535,8 @@ fn named(call: &Call, own: &Own) -> *mut ShapeOpSolver {
         Call::SetPoints(op, _) | Call::GetPoints(op, ..) | Call::SetTimeStep(op, _) | Call::SetDamping(op, _) => {
             Some(op)
         }
-        Call::SetThreadCount(op, _) | Call::AddConstraint(op, ..) | Call::AddConstraints(op, ..) => Some(op),
+        Call::SetThreadCount(op, _) | Call::SetAcceleration(op, ..) => Some(op),
+        Call::AddConstraint(op, ..) | Call::AddConstraints(op, ..) => Some(op),
         Call::EditConstraint(op, ..)
         | Call::EditOwn(op, ..)
         | Call::SetWeight(op, ..)

@@ -22,7 +22,7 @@ fn read(file: &str) -> String {
 fn enumerators(header: &str) -> BTreeMap<String, i32> {
     let numbered = header.lines().filter_map(|line| line.trim().trim_end_matches(',').split_once(" = "));
     let own = numbered.filter(|(name, _)| name.starts_with("SO_") && !name.contains("SO_OUTCOME"));
-    let own = own.filter(|(name, _)| !name.contains("SO_PROJECTION"));
+    let own = own.filter(|(name, _)| !name.contains("SO_PROJECTION") && !name.contains("SO_ACCELERATION"));
     own.map(|(name, number)| (name.to_owned(), number.parse().unwrap())).collect()
 }
 

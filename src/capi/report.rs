@@ -70,8 +70,25 @@ pub struct shapeop_solve_report {
     pub factorisation_seconds: f64,
     /// Seconds spent on projections in this call.
     pub local_seconds: f64,
-    /// Seconds spent on right-hand sides and linear solves in this call.
+    /// Seconds spent on right-hand sides, linear solves and acceleration in this call.
     pub global_seconds: f64,
+    /// Evaluations made: a local step at points that were tried, whether they were kept or not, and the global step from
+    /// there where they were. Without acceleration one per iteration; the first local step is not counted.
+    pub evaluations: c_uint,
+    /// Evaluations of points whose energy was higher than before, or not as much lower as the line search asks for.
+    pub rejected_energy_rose: c_uint,
+    /// Evaluations of points whose energy was not finite.
+    pub rejected_not_finite: c_uint,
+    /// Iterations in which acceleration left out a part of its history as ill-conditioned.
+    pub rejected_ill_conditioned: c_uint,
+    /// Directions of acceleration that were not tried, as the energy would rise along them.
+    pub rejected_not_descent: c_uint,
+    /// Directions of acceleration that were given up, as no step along them was accepted: the line search failed.
+    pub rejected_line_search: c_uint,
+    /// Orderings (with the analysis of the matrix's pattern) made since the solver was created.
+    pub ordering_count: c_uint,
+    /// Numeric factorisations made since the solver was created.
+    pub factorisation_count: c_uint,
 }
 
 /// What a progress callback is told after every iteration.
@@ -109,6 +126,7 @@ unsafe impl SizedStruct for shapeop_solve_report {
         offset_of!(Self, factorisation_seconds),
         offset_of!(Self, local_seconds),
         offset_of!(Self, global_seconds),
+        offset_of!(Self, evaluations),
         size_of::<shapeop_solve_report>(),
     ];
 }
@@ -129,10 +147,10 @@ pub unsafe extern "C" fn shapeop_defaultSolveOptions(options: *mut shapeop_solve
     }))
 }
 
-/// Iterates until `options` (null: the defaults) say to stop; in dynamic mode within one time step. `progress` may be
-/// null; it is called with `user` after every iteration. While it runs, reading calls on `op` from it answer with the
-/// current iterate, and all other calls are refused as busy. `report` is null, or its `struct_size` is set; it is
-/// written on success.
+/// Iterates until `options` (null: the defaults) say to stop; in dynamic mode within one time step. Iterations are
+/// accelerated unless `shapeop_setAcceleration` said otherwise. `progress` may be null; it is called with `user` after
+/// every iteration. While it runs, reading calls on `op` from it answer with the current iterate, and all other calls
+/// are refused as busy. `report` is null, or its `struct_size` is set; it is written on success.
 ///
 /// A force along a motion that no constraint resists is the outcome `SO_OUTCOME_UNBOUNDED` of a successful call.
 ///
@@ -257,6 +275,14 @@ fn told(report: &Report, unconstrained_count: usize) -> shapeop_solve_report {
         factorisation_seconds: report.factorisation_seconds,
         local_seconds: report.local_seconds,
         global_seconds: report.global_seconds,
+        evaluations: report.evaluations,
+        rejected_energy_rose: report.rejections.energy_rose,
+        rejected_not_finite: report.rejections.not_finite,
+        rejected_ill_conditioned: report.rejections.ill_conditioned,
+        rejected_not_descent: report.rejections.not_descent,
+        rejected_line_search: report.rejections.line_search,
+        ordering_count: report.ordering_count,
+        factorisation_count: report.factorisation_count,
     }
 }
 

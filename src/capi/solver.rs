@@ -5,6 +5,7 @@ use std::ffi::{c_int, c_uint};
 use super::handles::{self, Handle, ShapeOpSolver};
 use super::{arguments, flag, guard, guard_named};
 use crate::error::{Error, Result, Status};
+use crate::problem::Acceleration;
 
 /// Threads at most: far above what any problem gains from, and far below what would exhaust a machine.
 const MOST_THREADS: usize = 1024;
@@ -40,6 +41,7 @@ pub extern "C" fn shapeop_initDynamic(op: *mut ShapeOpSolver, masses: f64, dampi
 }
 
 /// Static: so many local/global iterations from the current points. Dynamic: one time step with so many iterations.
+/// They are the plain ones unless `shapeop_setAcceleration` asked for others.
 /// Changes since the last call, of constraints too, take effect. Returns 0, or 1 with the points as before if the
 /// solver was not initialised, if a force acts along a motion that no constraint resists, or if the numbers became too
 /// large.
@@ -70,6 +72,43 @@ pub extern "C" fn shapeop_setThreadCount(op: *mut ShapeOpSolver, nb_threads: c_i
         solver.set_thread_count(thread_count(nb_threads)?);
         Ok(())
     }))
+}
+
+/// How iterations are accelerated: see `shapeop_setAcceleration`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub enum shapeop_acceleration {
+    /// Not at all: every iteration is one local and one global step.
+    SO_ACCELERATION_NONE = 0,
+    /// Safeguarded Anderson acceleration.
+    SO_ACCELERATION_ANDERSON = 1,
+    /// L-BFGS with the matrix of the global step as initial Hessian, and a line search.
+    SO_ACCELERATION_QUASI_NEWTON = 2,
+    /// The default: none in `shapeop_solve`, quasi-Newton in `shapeop_solveUntil`.
+    SO_ACCELERATION_AUTOMATIC = 3,
+}
+
+/// Sets how the following solves are accelerated: `kind` is a `shapeop_acceleration`, `memory` the number of iterations
+/// that are remembered for it, at most 64; 0: the method's default. Accelerated solves take far fewer iterations to the
+/// same energy, and an accelerated step never raises it; the iterates are others than without. Every call, and so every
+/// time step, begins anew: nothing is remembered from call to call. A refused call changes nothing.
+#[unsafe(no_mangle)]
+pub extern "C" fn shapeop_setAcceleration(op: *mut ShapeOpSolver, kind: c_int, memory: c_uint) -> super::shapeop_err {
+    super::code(guard(op, |solver| solver.set_acceleration(acceleration(kind)?, memory)))
+}
+
+fn acceleration(kind: c_int) -> Result<Acceleration> {
+    const ALL: [(shapeop_acceleration, Acceleration); 4] = [
+        (shapeop_acceleration::SO_ACCELERATION_NONE, Acceleration::None),
+        (shapeop_acceleration::SO_ACCELERATION_ANDERSON, Acceleration::Anderson),
+        (shapeop_acceleration::SO_ACCELERATION_QUASI_NEWTON, Acceleration::QuasiNewton),
+        (shapeop_acceleration::SO_ACCELERATION_AUTOMATIC, Acceleration::Automatic),
+    ];
+    let found = ALL.iter().find(|(number, _)| *number as c_int == kind);
+    found.map(|(_, acceleration)| *acceleration).ok_or_else(|| {
+        let reason = format!("expected a shapeop_acceleration, 0 to {}, found {kind}", ALL.len() - 1);
+        Error::new(Status::InvalidValue, reason).at("kind")
+    })
 }
 
 fn thread_count(nb_threads: c_int) -> Result<usize> {

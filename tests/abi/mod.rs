@@ -200,6 +200,14 @@ pub fn report() -> shapeop_solve_report {
         factorisation_seconds: -1.0,
         local_seconds: -1.0,
         global_seconds: -1.0,
+        evaluations: u32::MAX,
+        rejected_energy_rose: u32::MAX,
+        rejected_not_finite: u32::MAX,
+        rejected_ill_conditioned: u32::MAX,
+        rejected_not_descent: u32::MAX,
+        rejected_line_search: u32::MAX,
+        ordering_count: u32::MAX,
+        factorisation_count: u32::MAX,
     }
 }
 
