@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use shapeop::mesh::Format;
+use shapeop::problem::Acceleration;
 use shapeop::problem::recipes::{Anchors, Fairness, RecipeOptions};
 
 const STYLES: Styles = Styles::styled()
@@ -207,9 +208,32 @@ pub struct IterateArgs {
     /// Stop after so many seconds (dynamic: all time steps together); 0: no limit [default: what the problem says]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub seconds: Option<f64>,
+    /// How iterations are accelerated [default: what the problem says; automatic, which is quasi-newton, for a mesh]
+    #[arg(long, value_name = "METHOD", value_enum)]
+    pub acceleration: Option<AccelerationKind>,
     /// Threads; 0: as many as the machine has. The result does not depend on it
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum AccelerationKind {
+    /// Plain iterations
+    None,
+    /// Safeguarded Anderson acceleration
+    Anderson,
+    /// L-BFGS with a line search
+    QuasiNewton,
+}
+
+impl From<AccelerationKind> for Acceleration {
+    fn from(kind: AccelerationKind) -> Self {
+        match kind {
+            AccelerationKind::None => Self::None,
+            AccelerationKind::Anderson => Self::Anderson,
+            AccelerationKind::QuasiNewton => Self::QuasiNewton,
+        }
+    }
 }
 
 /// What to write and how.

@@ -33,6 +33,10 @@ pub struct Report {
     /// How the run ended: converged, iteration limit, time budget, cancelled, stalled.
     pub outcome: &'static str,
     pub iterations: u32,
+    /// Local steps at points that were tried, kept or not.
+    pub evaluations: u32,
+    /// What acceleration tried in vain, by cause.
+    pub rejections: BTreeMap<&'static str, u32>,
     pub steps: u32,
     pub seconds: Seconds,
     pub energy: BeforeAfter<f64>,
@@ -127,6 +131,7 @@ impl Report {
         let moved = Spread::of(&displacements(&before.points, &after.points)?);
         let edge = quality.as_ref().map(|quality| quality.before.edge_length.mean).filter(|edge| *edge > 0.0);
         let solver_report = &run.report;
+        let rejections = solver_report.rejections;
         Ok(Self {
             version: VERSION,
             program: concat!("shapeop ", env!("CARGO_PKG_VERSION")),
@@ -140,6 +145,14 @@ impl Report {
             settings: subject.settings,
             outcome: solver_report.outcome.text(),
             iterations: solver_report.iterations,
+            evaluations: solver_report.evaluations,
+            rejections: BTreeMap::from([
+                ("energy_rose", rejections.energy_rose),
+                ("not_finite", rejections.not_finite),
+                ("ill_conditioned", rejections.ill_conditioned),
+                ("not_descent", rejections.not_descent),
+                ("line_search", rejections.line_search),
+            ]),
             steps: run.steps,
             seconds: Seconds {
                 total: run.seconds,

@@ -7,8 +7,8 @@ use anyhow::{Result, bail};
 use glam::DVec3;
 use serde::Serialize;
 use shapeop::mesh::Mesh;
-use shapeop::problem::{Mode, Problem, Settings};
-use shapeop::solver::{Outcome, Report, SolveOptions, Solver};
+use shapeop::problem::{Acceleration, Mode, Problem, Settings};
+use shapeop::solver::{Outcome, Rejections, Report, SolveOptions, Solver};
 
 use crate::args::IterateArgs;
 use crate::progress::{Progress, is_interrupted};
@@ -53,6 +53,7 @@ pub fn settings(problem: &Problem, args: &IterateArgs) -> Settings {
         max_iterations: args.iterations.unwrap_or(file.max_iterations),
         tolerance: args.tolerance.unwrap_or(file.tolerance),
         time_budget_seconds: args.seconds.unwrap_or(file.time_budget_seconds),
+        acceleration: args.acceleration.map_or(file.acceleration, Acceleration::from),
         ..file
     }
 }
@@ -62,6 +63,7 @@ pub fn run(problem: &Problem, settings: &Settings, threads: usize, is_quiet: boo
     let started = Instant::now();
     let mut solver = Solver::from_problem(problem)?;
     solver.set_thread_count(threads);
+    solver.set_acceleration(settings.acceleration, settings.acceleration_memory)?;
     let is_dynamic = problem.mode == Mode::Dynamic;
     let step_count = if is_dynamic { settings.steps } else { 1 };
     let progress = Progress::new(if is_dynamic { step_count } else { settings.max_iterations }, is_quiet);
@@ -121,8 +123,17 @@ pub fn run(problem: &Problem, settings: &Settings, threads: usize, is_quiet: boo
 
 /// The report of two time steps that follow each other.
 fn joined(before: Report, after: Report) -> Report {
+    let (old, new) = (before.rejections, after.rejections);
     Report {
         iterations: before.iterations.saturating_add(after.iterations),
+        evaluations: before.evaluations.saturating_add(after.evaluations),
+        rejections: Rejections {
+            energy_rose: old.energy_rose.saturating_add(new.energy_rose),
+            not_finite: old.not_finite.saturating_add(new.not_finite),
+            ill_conditioned: old.ill_conditioned.saturating_add(new.ill_conditioned),
+            not_descent: old.not_descent.saturating_add(new.not_descent),
+            line_search: old.line_search.saturating_add(new.line_search),
+        },
         energy_before: before.energy_before,
         local_seconds: before.local_seconds + after.local_seconds,
         global_seconds: before.global_seconds + after.global_seconds,

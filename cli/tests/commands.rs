@@ -226,6 +226,29 @@ fn the_number_of_threads_changes_no_bit() {
 }
 
 #[test]
+fn acceleration_is_as_asked_for_and_needs_fewer_evaluations() {
+    let mesh = mesh_path("hypar.obj");
+    let run = |asked: &[&str]| -> Value {
+        let folder = Folder::new("acceleration");
+        let arguments =
+            [&["planarize", &mesh, "--json", "--picture", "none", "--tolerance", "1e-7"][..], asked].concat();
+        serde_json::from_str(&said(&shapeop_into(&folder, &arguments))).unwrap()
+    };
+    let plain = run(&["--acceleration", "none"]);
+    assert_eq!(plain["evaluations"], plain["iterations"]);
+    assert_eq!(plain["settings"]["acceleration"], "none");
+    assert_eq!(run(&[])["settings"]["acceleration"], "automatic");
+    for asked in [&[][..], &["--acceleration", "quasi-newton"]] {
+        let report = run(asked);
+        assert!(report["evaluations"].as_u64() < plain["evaluations"].as_u64(), "{asked:?}: {}", report["evaluations"]);
+        assert!(report["energy"]["after"].as_f64() < plain["energy"]["after"].as_f64(), "{asked:?}");
+        let rejected = ["energy_rose", "not_finite"].map(|cause| report["rejections"][cause].as_u64().unwrap());
+        let evaluations = report["iterations"].as_u64().unwrap() + rejected.iter().sum::<u64>();
+        assert_eq!(report["evaluations"].as_u64(), Some(evaluations), "{asked:?}");
+    }
+}
+
+#[test]
 fn problem_files_are_solved_with_pictures() {
     for (name, faces) in [("circularize", 171), ("regularize", 199)] {
         let folder = Folder::new(&format!("solve-{name}"));
