@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use shapeop::constraints::NewConstraints;
+use shapeop::problem::Acceleration;
 use shapeop::solver::{SolveOptions, Solver};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -17,6 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{} vertices, {} constraints", solver.points().len(), solver.constraint_count());
     println!("made in         {:8.2} s", started.elapsed().as_secs_f64());
     let started = Instant::now();
+    solver.set_acceleration(Acceleration::None, 0)?;
     solver.init()?;
     println!("initialised in  {:8.2} s", started.elapsed().as_secs_f64());
     let started = Instant::now();
