@@ -56,7 +56,7 @@ pub fn show(figures: &mut Figures) -> Result<()> {
     }
 
     figures.group("planarize with closeness 1e-5, at most 2000 plain iterations");
-    let free = ["--closeness", "1e-5", "--iterations", "2000", "--tolerance", "0"];
+    let free = ["--closeness", "1e-5", "--iterations", "2000", "--tolerance", "0", "--acceleration", "none"];
     for mesh in ["hypar", "tubemesh", "costa_mesh_free2"] {
         let report = program.planarize(mesh, &free)?;
         planarity(figures, mesh, &report);
