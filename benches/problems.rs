@@ -1,44 +1,91 @@
-//! Times one of the benchmark problems in a process of its own, and prints a line of JSON.
-//!
-//! `problems NAME VERTICES [ITERATIONS [THREADS]]`
+//! The benchmark problems: each call measures one thing in a process of its own and prints a line of JSON.
 
 use std::error::Error;
 use std::time::Instant;
 
+use serde_json::{Value, json};
+
+mod floor;
+mod handle;
+mod model_file;
 mod models;
+
+const USAGE: &str = "usage:
+  problems NAME VERTICES [ITERATIONS [THREADS [POINTS_FILE]]]   initialisation and one iteration
+  problems write NAME VERTICES FILE                             the model as a file
+  problems bytes NAME VERTICES                                  what an iteration streams at least
+  problems bandwidth BYTES THREADS                              reading an array of that size
+  problems handle [VERTICES [SOLVES [THREADS]]]                 dragging one vertex";
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Cargo adds `--bench`.
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
-    let [name, vertex_count, rest @ ..] = arguments.as_slice() else {
-        println!("usage: problems NAME VERTICES [ITERATIONS [THREADS]], NAME one of {}", models::NAMES.join(", "));
-        return Ok(());
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let line = match words.as_slice() {
+        ["write", name, vertex_count, file] => {
+            let model = model(name, vertex_count)?;
+            model_file::write(&model, file)?;
+            json!({"vertices": model.points.len()})
+        }
+        ["bytes", name, vertex_count] => floor::bytes(&model(name, vertex_count)?.solver()?)?,
+        ["bandwidth", bytes, threads] => {
+            let threads = threads.parse()?;
+            json!({"threads": threads, "bytes_per_second": floor::bandwidth(bytes.parse()?, threads)})
+        }
+        ["handle", rest @ ..] => {
+            let number = |i: usize, default: u32| rest.get(i).map_or(Ok(default), |text| text.parse());
+            handle::time(number(0, 20_000)?, number(1, 100)?, number(2, 0)? as usize)?
+        }
+        [name, vertex_count, rest @ ..] => time(name, vertex_count, rest)?,
+        _ => {
+            println!("{USAGE}\nNAME one of {}", models::NAMES.join(", "));
+            return Ok(());
+        }
     };
+    println!("{line}");
+    Ok(())
+}
+
+fn model(name: &str, vertex_count: &str) -> Result<models::Model, Box<dyn Error>> {
+    Ok(models::model(name, vertex_count.parse()?).ok_or("no problem of that name")?)
+}
+
+fn time(name: &str, vertex_count: &str, rest: &[&str]) -> Result<Value, Box<dyn Error>> {
     let iterations: u32 = rest.first().map_or(Ok(20), |text| text.parse())?;
-    let model = models::model(name, vertex_count.parse()?).ok_or("no problem of that name")?;
+    let threads: usize = rest.get(1).map_or(Ok(0), |text| text.parse())?;
+    let model = model(name, vertex_count)?;
     let mut solver = model.solver()?;
-    if let Some(threads) = rest.get(1) {
-        solver.set_thread_count(threads.parse()?);
-    }
+    solver.set_thread_count(threads);
     let started = Instant::now();
     model.init(&mut solver)?;
     let init_seconds = started.elapsed().as_secs_f64();
     // Threads start and caches warm in the first iterations.
     solver.solve(3)?;
-    let started = Instant::now();
+    let iterations = iterations.div_ceil(5);
     let mut steps = Vec::new();
     for _ in 0..5 {
         let started = Instant::now();
-        solver.solve(iterations.div_ceil(5))?;
-        steps.push(started.elapsed().as_secs_f64() / f64::from(iterations.div_ceil(5)));
+        solver.solve(iterations)?;
+        steps.push(started.elapsed().as_secs_f64() / f64::from(iterations));
     }
-    let _ = started;
     steps.sort_by(f64::total_cmp);
-    println!(
-        "{{\"problem\": \"{name}\", \"vertices\": {}, \"init_ms\": {:.3}, \"iteration_ms\": {:.4}}}",
-        solver.points().len(),
-        1e3 * init_seconds,
-        1e3 * steps[steps.len() / 2]
-    );
-    Ok(())
+    if let Some(file) = rest.get(2) {
+        model_file::write_points(solver.points(), file)?;
+    }
+    Ok(json!({
+        "problem": name,
+        "vertices": solver.points().len(),
+        "threads": threads,
+        "init_ms": 1e3 * init_seconds,
+        "iteration_ms": 1e3 * steps[steps.len() / 2],
+        "peak_mib": peak_memory_mib(),
+    }))
+}
+
+/// The peak resident memory of this process, where the system tells.
+fn peak_memory_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kib / 1024.0)
 }
