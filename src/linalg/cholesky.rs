@@ -167,6 +167,15 @@ impl SymmetricMatrix {
         &mut self.values[self.column_starts[i] as usize]
     }
 
+    /// Calls `visit(i, j, value)` for every entry of the lower triangle, column by column, rows ascending.
+    pub fn visit(&self, mut visit: impl FnMut(u32, u32, f64)) {
+        for j in 0..self.dimension {
+            for k in self.column_starts[j] as usize..self.column_starts[j + 1] as usize {
+                visit(self.rows[k], j as u32, self.values[k]);
+            }
+        }
+    }
+
     /// `y = A x` for three columns at once. Both slices have [`Self::dimension`] entries.
     pub fn multiply(&self, x: &[DVec3], y: &mut [DVec3]) {
         y.fill(DVec3::ZERO);

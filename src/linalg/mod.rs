@@ -1,8 +1,11 @@
 //! Linear algebra: the sparse system of the global step, and closed forms in two and three dimensions.
 
 pub mod cholesky;
+pub mod conjugate_gradients;
 pub mod lanes;
 mod nested_dissection;
+mod multilevel;
 mod panels;
+mod rows;
 pub mod simd;
 pub mod small;
