@@ -7,11 +7,13 @@ use serde_json::{Value, json};
 
 mod floor;
 mod handle;
+mod linear;
 mod model_file;
 mod models;
 
 const USAGE: &str = "usage:
   problems NAME VERTICES [ITERATIONS [THREADS [POINTS_FILE]]]   initialisation and one iteration
+  problems linear NAME VERTICES automatic|direct|conjugate-gradients [ITERATIONS [THREADS]]
   problems write NAME VERTICES FILE                             the model as a file
   problems bytes NAME VERTICES                                  what an iteration streams at least
   problems bandwidth BYTES THREADS                              reading an array of that size
@@ -31,6 +33,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         ["bandwidth", bytes, threads] => {
             let threads = threads.parse()?;
             json!({"threads": threads, "bytes_per_second": floor::bandwidth(bytes.parse()?, threads)})
+        }
+        ["linear", name, vertex_count, choice, rest @ ..] => {
+            let number = |i: usize, default: u32| rest.get(i).map_or(Ok(default), |text| text.parse());
+            linear::time(&model(name, vertex_count)?, choice, number(0, 10)?, number(1, 0)? as usize)?
         }
         ["handle", rest @ ..] => {
             let number = |i: usize, default: u32| rest.get(i).map_or(Ok(default), |text| text.parse());

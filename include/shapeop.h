@@ -164,6 +164,24 @@ typedef enum shapeop_outcome {
 } shapeop_outcome;
 
 /**
+ * How the linear system of an iteration is solved: see `shapeop_setLinearSolver`.
+ */
+typedef enum shapeop_linear_solver {
+    /**
+     * The default: a factor if it is predicted to take at most 2 GB while it is computed, else conjugate gradients.
+     */
+    SO_LINEAR_SOLVER_AUTOMATIC = 0,
+    /**
+     * A Cholesky factor, computed once and used in every iteration.
+     */
+    SO_LINEAR_SOLVER_DIRECT = 1,
+    /**
+     * Conjugate gradients, preconditioned by multigrid, from the current points: far less memory, and no factor to compute.
+     */
+    SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS = 2,
+} shapeop_linear_solver;
+
+/**
  * How iterations are accelerated: see `shapeop_setAcceleration`.
  */
 typedef enum shapeop_acceleration {
@@ -401,6 +419,14 @@ typedef struct shapeop_solve_report {
      * Numeric factorisations made since the solver was created.
      */
     unsigned int factorisation_count;
+    /**
+     * How linear systems were solved: `SO_LINEAR_SOLVER_DIRECT` or `SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS`.
+     */
+    enum shapeop_linear_solver linear_solver;
+    /**
+     * Iterations of conjugate gradients in all linear solves of this call; 0 with a factor.
+     */
+    unsigned int linear_iterations;
 } shapeop_solve_report;
 
 #ifdef __cplusplus
@@ -490,6 +516,13 @@ SHAPEOP_API enum shapeop_err shapeop_setThreadCount(struct ShapeOpSolver *op, in
  * time step, begins anew: nothing is remembered from call to call. A refused call changes nothing.
  */
 SHAPEOP_API enum shapeop_err shapeop_setAcceleration(struct ShapeOpSolver *op, int kind, unsigned int memory);
+
+/**
+ * Sets how the linear system of an iteration is solved, from the next solve on; `linear_solver` is a
+ * `shapeop_linear_solver`, and any other number is refused. The iterates agree to about 1e-10 of the model's size.
+ * `shapeop_solve_report` says what ran.
+ */
+SHAPEOP_API enum shapeop_err shapeop_setLinearSolver(struct ShapeOpSolver *op, int linear_solver);
 
 /**
  * Replaces the positions: `points` holds `x0 y0 z0 x1 ...` in model units. Rest states, targets and velocities stay.

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 use shapeop::constraints::types;
 use shapeop::problem::Acceleration;
-use shapeop::solver::{SolveOptions, Solver};
+use shapeop::solver::{LinearSolver, SolveOptions, Solver};
 
 struct Counting;
 
@@ -45,8 +45,12 @@ fn between_the_second_and_the_last_iteration_nothing_is_allocated() {
         .map(|i| DVec3::new(f64::from(i % n) + bump(i), f64::from(i / n) + bump(i + 3), bump(i + 5)))
         .collect();
     let accelerations = [Acceleration::None, Acceleration::Anderson, Acceleration::QuasiNewton];
-    for (is_dynamic, acceleration) in [false, true].into_iter().flat_map(|d| accelerations.map(|a| (d, a))) {
+    let cases = [false, true].into_iter().flat_map(|d| accelerations.map(|a| (d, a))).flat_map(|(d, a)| {
+        [LinearSolver::Direct, LinearSolver::ConjugateGradients].map(|linear_solver| (d, a, linear_solver))
+    });
+    for (is_dynamic, acceleration, linear_solver) in cases {
         let mut solver = Solver::new();
+        solver.set_linear_solver(linear_solver);
         solver.set_thread_count(1);
         solver.set_acceleration(acceleration, 6).unwrap();
         solver.set_points(&points).unwrap();
@@ -74,7 +78,8 @@ fn between_the_second_and_the_last_iteration_nothing_is_allocated() {
             })
             .unwrap();
         assert_eq!(counts.len(), 20);
-        assert_eq!(counts[19] - counts[1], 0, "allocations in 18 iterations, dynamic: {is_dynamic}, {acceleration:?}");
+        let case = format!("dynamic: {is_dynamic}, {acceleration:?}, {linear_solver:?}");
+        assert_eq!(counts[19] - counts[1], 0, "allocations in 18 iterations, {case}");
         let before = allocation_count();
         solver.solve(20).unwrap();
         assert_eq!(allocation_count() - before, 0, "allocations in a second solve");

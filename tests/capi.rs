@@ -103,6 +103,7 @@ fn bad_handles_are_refused_by_every_function() {
         assert_eq!(shapeop_removeForce(bad, 0), SO_INVALID_HANDLE);
         assert_eq!(shapeop_setThreadCount(bad, 1), SO_INVALID_HANDLE);
         assert_eq!(shapeop_setAcceleration(bad, 0, 0), SO_INVALID_HANDLE);
+        assert_eq!(shapeop_setLinearSolver(bad, 1), SO_INVALID_HANDLE);
         for count in [
             shapeop_pointCount(bad),
             shapeop_constraintCount(bad),
@@ -368,6 +369,7 @@ extern "C" fn read_everything(progress: *const shapeop_progress, user: *mut c_vo
     assert_eq!(shapeop_removeForce(abi.0, 0), SO_BUSY);
     assert_eq!(shapeop_setThreadCount(abi.0, 2), SO_BUSY);
     assert_eq!(shapeop_setAcceleration(abi.0, 1, 0), SO_BUSY);
+    assert_eq!(shapeop_setLinearSolver(abi.0, 1), SO_BUSY);
     shapeop_delete(abi.0);
     assert!(abi.message().contains("busy"));
     // Another solver is not, not even inside a callback of its own, from which the first can still be read.
@@ -561,6 +563,34 @@ fn solve_until_keeps_to_its_options() {
     // SAFETY: both carry their size.
     let code = unsafe { shapeop_solveUntil(abi.0, &hurried, None, ptr::null_mut(), &mut found) };
     assert_eq!((code, found.outcome, found.iterations), (SO_SUCCESS, SO_OUTCOME_TIME_BUDGET, 1));
+}
+
+#[test]
+fn the_linear_solver_can_be_set_and_the_report_says_which_ran() {
+    let abi = warped();
+    assert_eq!(abi.init(), 0);
+    for (number, expected) in [
+        (shapeop_linear_solver::SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS, "CONJUGATE_GRADIENTS"),
+        (shapeop_linear_solver::SO_LINEAR_SOLVER_DIRECT, "DIRECT"),
+        (shapeop_linear_solver::SO_LINEAR_SOLVER_AUTOMATIC, "DIRECT"),
+    ] {
+        abi.set_points(&WARPED);
+        assert_eq!(shapeop_setLinearSolver(abi.0, number as c_int), SO_SUCCESS);
+        // A refused number changes nothing.
+        for bad in [-1, 3, c_int::MAX, c_int::MIN] {
+            assert_eq!(shapeop_setLinearSolver(abi.0, bad), SO_INVALID_VALUE);
+            let expected = "linear_solver: expected 0 (automatic), 1 (direct) or 2 (conjugate gradients), found";
+            assert!(abi.message().starts_with(expected), "{}", abi.message());
+        }
+        let (code, report) = abi.solve_until(1);
+        assert_eq!(code, SO_SUCCESS);
+        assert!(format!("{:?}", report.linear_solver).ends_with(expected));
+        assert_eq!(report.linear_iterations > 0, expected == "CONJUGATE_GRADIENTS");
+        // As in the test by hand: z = z₀ / 5.
+        for (found, start) in abi.points().chunks_exact(3).zip(WARPED.chunks_exact(3)) {
+            assert!((found[2] - start[2] / 5.0).abs() < 1e-12);
+        }
+    }
 }
 
 #[test]

@@ -79,6 +79,7 @@ enum Call {
     SetDamping(Op, f64),
     SetThreadCount(Op, c_int),
     SetAcceleration(Op, c_int, u32),
+    SetLinearSolver(Op, c_int),
     AddConstraint(Op, Option<CString>, Array<c_int>, f64),
     /// Type, ids, counts, weights, scalars, number of sets, flags, whether ids are wanted.
     AddConstraints(Op, Option<CString>, Array<c_int>, Array<c_int>, Array<f64>, Array<f64>, c_int, u32, bool),
@@ -223,6 +224,7 @@ fn call() -> impl Strategy<Value = Call> {
             .prop_map(|(o, n)| Call::SetThreadCount(o, n)),
         2 => (op(), prop_oneof![9 => 0..4, 1 => integer()], prop_oneof![9 => 0..10_u32, 1 => any::<u32>()])
             .prop_map(|(o, kind, memory)| Call::SetAcceleration(o, kind, memory)),
+        2 => (op(), prop_oneof![3 => 0..3, 1 => integer()]).prop_map(|(o, n)| Call::SetLinearSolver(o, n)),
         14 => (op(), fitting(), 0.0..10.0_f64).prop_map(|(o, (t, i), w)| Call::AddConstraint(o, t, i, w)),
         8 => (op(), 0..99_usize, scalars()).prop_map(|(o, pick, s)| Call::EditOwn(o, pick, s)),
         4 => (op(), type_name(), indices(), number()).prop_map(|(o, t, i, w)| Call::AddConstraint(o, t, i, w)),
@@ -406,6 +408,7 @@ fn make(call: &Call, own: &mut Own) -> Result<bool, String> {
             }
             Call::SetThreadCount(op, count) => refused(shapeop_setThreadCount(at(op), *count)),
             Call::SetAcceleration(op, kind, memory) => refused(shapeop_setAcceleration(at(op), *kind, *memory)),
+            Call::SetLinearSolver(op, kind) => refused(shapeop_setLinearSolver(at(op), *kind)),
             Call::AddConstraint(op, type_name, ids, weight) => {
                 let ids_data = ids.data().cast_mut();
                 let id = shapeop_addConstraint(at(op), name(type_name), ids_data, ids.count(), *weight);
@@ -535,7 +538,7 @@ fn named(call: &Call, own: &Own) -> *mut ShapeOpSolver {
         Call::SetPoints(op, _) | Call::GetPoints(op, ..) | Call::SetTimeStep(op, _) | Call::SetDamping(op, _) => {
             Some(op)
         }
-        Call::SetThreadCount(op, _) | Call::SetAcceleration(op, ..) => Some(op),
+        Call::SetThreadCount(op, _) | Call::SetAcceleration(op, ..) | Call::SetLinearSolver(op, _) => Some(op),
         Call::AddConstraint(op, ..) | Call::AddConstraints(op, ..) => Some(op),
         Call::EditConstraint(op, ..)
         | Call::EditOwn(op, ..)

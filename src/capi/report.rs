@@ -7,10 +7,11 @@ use std::ops::ControlFlow;
 use super::arguments::{check_pointer, write};
 use super::handles::{Handle, ShapeOpSolver};
 use super::points::check_count;
+use super::solver::shapeop_linear_solver;
 use super::structs::{self, SizedStruct};
 use super::{code, current, guard, guard_free, guard_read, messages, shapeop_err};
 use crate::error::{Error, Result, Status};
-use crate::solver::{Outcome, Progress, Report, SolveOptions};
+use crate::solver::{LinearSolver, Outcome, Progress, Report, SolveOptions};
 
 /// When to stop. Start from `shapeop_defaultSolveOptions`.
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +90,10 @@ pub struct shapeop_solve_report {
     pub ordering_count: c_uint,
     /// Numeric factorisations made since the solver was created.
     pub factorisation_count: c_uint,
+    /// How linear systems were solved: `SO_LINEAR_SOLVER_DIRECT` or `SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS`.
+    pub linear_solver: shapeop_linear_solver,
+    /// Iterations of conjugate gradients in all linear solves of this call; 0 with a factor.
+    pub linear_iterations: c_uint,
 }
 
 /// What a progress callback is told after every iteration.
@@ -127,6 +132,7 @@ unsafe impl SizedStruct for shapeop_solve_report {
         offset_of!(Self, local_seconds),
         offset_of!(Self, global_seconds),
         offset_of!(Self, evaluations),
+        offset_of!(Self, linear_solver),
         size_of::<shapeop_solve_report>(),
     ];
 }
@@ -283,6 +289,16 @@ fn told(report: &Report, unconstrained_count: usize) -> shapeop_solve_report {
         rejected_line_search: report.rejections.line_search,
         ordering_count: report.ordering_count,
         factorisation_count: report.factorisation_count,
+        linear_solver: linear_solver(report.linear_solver),
+        linear_iterations: report.linear_iterations,
+    }
+}
+
+fn linear_solver(used: LinearSolver) -> shapeop_linear_solver {
+    match used {
+        LinearSolver::Automatic => shapeop_linear_solver::SO_LINEAR_SOLVER_AUTOMATIC,
+        LinearSolver::Direct => shapeop_linear_solver::SO_LINEAR_SOLVER_DIRECT,
+        LinearSolver::ConjugateGradients => shapeop_linear_solver::SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS,
     }
 }
 
@@ -312,6 +328,14 @@ mod tests {
             Outcome::Unbounded,
         ] {
             assert_eq!(outcome(each) as i32, each as i32);
+        }
+    }
+
+    #[test]
+    fn linear_solvers_have_the_numbers_of_the_rust_api() {
+        for each in [LinearSolver::Automatic, LinearSolver::Direct, LinearSolver::ConjugateGradients] {
+            assert_eq!(linear_solver(each) as i32, each as i32);
+            assert_eq!(LinearSolver::from_number(each as i32).unwrap(), each);
         }
     }
 }

@@ -18,7 +18,7 @@ use super::simd::Lanes;
 use crate::error::{Error, Result, Status};
 
 /// A coordinate is solved when no entry of the preconditioned residual `M⁻¹(b − A x)` is above this part of the extent of
-/// the start (the diagonal of its bounding box) or, if that is more, of the first such residual. With a multigrid cycle as
+/// the start (the longest side of its bounding box) or, if that is more, of the first such residual. With a multigrid cycle as
 /// `M⁻¹` that residual is the error itself within a small factor, whatever the weights are, which the residual is not. A
 /// hundredth of the 1e-10 that iterates with a factor agree to: the factor, and the errors of many iterations, have room.
 const TOLERANCE: f64 = 1e-12;
@@ -49,6 +49,7 @@ pub struct ConjugateGradients {
     direction: Vec<Lanes>,
     image: Vec<Lanes>,
     sums: Vec<Sums>,
+    tolerance: f64,
     iteration_count: u64,
 }
 
@@ -84,7 +85,22 @@ impl ConjugateGradients {
         let zeros = || vec![[0.0; 4]; n];
         let sums = vec![Sums::default(); n.div_ceil(CHUNK)];
         let (x, direction, image) = (zeros(), zeros(), zeros());
-        Ok(Self { preconditioner, scale, row_sums, x, direction, image, sums, iteration_count: 0 })
+        Ok(Self {
+            preconditioner,
+            scale,
+            row_sums,
+            x,
+            direction,
+            image,
+            sums,
+            tolerance: TOLERANCE,
+            iteration_count: 0,
+        })
+    }
+
+    /// Asks for `factor` times the error that solutions may have otherwise, about 1e-12 of the extent of the start.
+    pub fn tighten(&mut self, factor: f64) {
+        self.tolerance = TOLERANCE * factor;
     }
 
     /// Solves for x, y and z, on the current rayon pool if `is_parallel`: `right_hand_sides` (the matrix's dimension)
@@ -96,7 +112,7 @@ impl ConjugateGradients {
         let low = start.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = start.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let (origin, extent) =
-            if start.is_empty() { (DVec3::ZERO, 0.0) } else { (low + 0.5 * (high - low), low.distance(high)) };
+            if start.is_empty() { (DVec3::ZERO, 0.0) } else { (low + 0.5 * (high - low), (high - low).max_element()) };
         let (matrix, b, _) = self.preconditioner.parts();
         for (i, (x, b)) in self.x.iter_mut().zip(b.iter_mut()).enumerate() {
             *x = start.get(i).map_or([0.0; 4], |start| lanes((*start - origin) / self.scale[i]));
@@ -111,8 +127,15 @@ impl ConjugateGradients {
             matrix.apply(0.0, 1.0, &[], &self.x, &mut self.image, is_parallel);
         }
         add(b, [1.0; 4], &self.image, is_parallel);
-        let is_finite = b.iter().flatten().all(|value| value.is_finite());
-        self.iteration_count += u64::from(self.iterate(extent, is_parallel));
+        // In units of the largest residual no product of two numbers overflows, or vanishes, that need not.
+        let unit = b.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let mut is_finite = b.iter().flatten().all(|value| value.is_finite());
+        if is_finite && unit > 0.0 {
+            b.iter_mut().flatten().for_each(|value| *value /= unit);
+            let iterations = self.iterate(extent, unit, is_parallel);
+            is_finite = iterations.is_some();
+            self.iteration_count += u64::from(iterations.unwrap_or(0));
+        }
         for ((solution, x), scale) in right_hand_sides.iter_mut().zip(&self.x).zip(&self.scale) {
             *solution = origin + *scale * DVec3::new(x[0], x[1], x[2]);
             if !is_finite {
@@ -139,7 +162,9 @@ impl ConjugateGradients {
         let (matrix, b, _) = self.preconditioner.parts();
         matrix.apply(0.0, -1.0, &[], &self.x, b, is_parallel);
         self.x.fill([0.0; 4]);
-        self.iterate(0.0, is_parallel);
+        if self.iterate(0.0, 1.0, is_parallel).is_none() {
+            return true;
+        }
         let lost = |lane: usize| -> f64 {
             self.x.iter().enumerate().map(|(i, x)| (x[lane] - random(i + 1, lane)).powi(2)).sum()
         };
@@ -151,13 +176,13 @@ impl ConjugateGradients {
         self.iteration_count
     }
 
-    /// From a start in `x` and its residual in the preconditioner's right-hand side to the solution in `x`. Returns the
-    /// number of iterations.
-    fn iterate(&mut self, extent: f64, is_parallel: bool) -> u32 {
+    /// From a start in `x` and its residual in the preconditioner's right-hand side, which counts in `unit`, to the solution
+    /// in `x`. Returns the number of iterations, `None` if numbers overflowed.
+    fn iterate(&mut self, extent: f64, unit: f64, is_parallel: bool) -> Option<u32> {
         self.preconditioner.run(is_parallel);
-        let mut now = self.preconditioned(is_parallel);
+        let mut now = self.preconditioned(is_parallel)?;
         let first = now.greatest.iter().copied().fold(0.0, f64::max);
-        let tolerance = TOLERANCE * extent.max(first);
+        let tolerance = self.tolerance * (extent / unit).max(first);
         // A product that is not above 0 is 0 or round-off: nothing is left to gain, or nothing can be told any more.
         let mut is_active: [bool; 4] =
             std::array::from_fn(|lane| lane < 3 && now.greatest[lane] > tolerance && now.product[lane] > 0.0);
@@ -168,29 +193,29 @@ impl ConjugateGradients {
             let (matrix, _, preconditioned) = self.preconditioner.parts();
             follow(&mut self.direction, keep, preconditioned, is_parallel);
             matrix.apply(0.0, 1.0, &[], &self.direction, &mut self.image, is_parallel);
-            let bends = sum(&mut self.sums, is_parallel, &self.direction, &self.image, |_| 0.0).product;
+            // The image is that of minus the matrix.
+            let bends = sum(&mut self.sums, is_parallel, &self.direction, &self.image, |_| 0.0)?.product;
             let step: Lanes = std::array::from_fn(|lane| {
-                // The image is that of minus the matrix.
                 is_active[lane] &= bends[lane] < 0.0;
                 if is_active[lane] { -now.product[lane] / bends[lane] } else { 0.0 }
             });
             let (_, residual, _) = self.preconditioner.parts();
-            add(&mut self.x, step, &self.direction, is_parallel);
+            add(&mut self.x, step.map(|step| step * unit), &self.direction, is_parallel);
             add(residual, step, &self.image, is_parallel);
             self.preconditioner.run(is_parallel);
-            let next = self.preconditioned(is_parallel);
+            let next = self.preconditioned(is_parallel)?;
             for lane in 0..3 {
                 is_active[lane] &= next.greatest[lane] > tolerance && next.product[lane] > 0.0;
                 keep[lane] = if is_active[lane] { next.product[lane] / now.product[lane] } else { 0.0 };
             }
             now = next;
         }
-        iteration
+        Some(iteration)
     }
 
     /// The product of the residual with the preconditioned residual, and the greatest entry of the latter as a change of
     /// the unknowns.
-    fn preconditioned(&mut self, is_parallel: bool) -> Sums {
+    fn preconditioned(&mut self, is_parallel: bool) -> Option<Sums> {
         let (_, residual, preconditioned) = self.preconditioner.parts();
         let scale = &self.scale;
         sum(&mut self.sums, is_parallel, residual, preconditioned, |i| scale[i])
@@ -220,8 +245,14 @@ fn follow(x: &mut [Lanes], factor: Lanes, y: &[Lanes], is_parallel: bool) {
     });
 }
 
-/// The sum of `x y`, and the greatest `|weight(i) y|`, by coordinates. `sums` has room for one entry per chunk.
-fn sum(sums: &mut [Sums], is_parallel: bool, x: &[Lanes], y: &[Lanes], weight: impl Fn(usize) -> f64 + Sync) -> Sums {
+/// The sum of `x y`, and the greatest `|weight(i) y|`, by coordinates; `None` if that is not finite. `sums` has room for one entry per chunk.
+fn sum(
+    sums: &mut [Sums],
+    is_parallel: bool,
+    x: &[Lanes],
+    y: &[Lanes],
+    weight: impl Fn(usize) -> f64 + Sync,
+) -> Option<Sums> {
     let of_chunk = |chunk: usize| {
         let (first, end) = (chunk * CHUNK, ((chunk + 1) * CHUNK).min(x.len()));
         let mut sums = Sums::default();
@@ -235,10 +266,11 @@ fn sum(sums: &mut [Sums], is_parallel: bool, x: &[Lanes], y: &[Lanes], weight: i
         sums
     };
     fill(sums, is_parallel, of_chunk);
-    sums.iter().fold(Sums::default(), |total, part| Sums {
+    let total = sums.iter().fold(Sums::default(), |total, part| Sums {
         product: std::array::from_fn(|lane| total.product[lane] + part.product[lane]),
         greatest: std::array::from_fn(|lane| total.greatest[lane].max(part.greatest[lane])),
-    })
+    });
+    total.product.iter().chain(&total.greatest).all(|value| value.is_finite()).then_some(total)
 }
 
 #[cfg(test)]
@@ -286,7 +318,7 @@ mod tests {
     }
 
     fn largest(difference: impl Iterator<Item = DVec3>) -> f64 {
-        difference.map(|difference| difference.length()).fold(0.0, f64::max)
+        difference.map(|difference| difference.abs().max_element()).fold(0.0, f64::max)
     }
 
     #[test]
@@ -325,6 +357,8 @@ mod tests {
             (1.0, DVec3::ZERO, 1e-9),
             (1e9, DVec3::ZERO, 1e-9),
             (1e-9, DVec3::ZERO, 1e-9),
+            (1e-200, DVec3::ZERO, 1e-9),
+            (1e200, DVec3::ZERO, 1e-9),
             (1.0, DVec3::splat(1e6), 1e-6),
         ] {
             let (error, iterations) = solve(scale, place);

@@ -3,8 +3,8 @@
 pub mod cholesky;
 pub mod conjugate_gradients;
 pub mod lanes;
-mod nested_dissection;
 mod multilevel;
+mod nested_dissection;
 mod panels;
 mod rows;
 pub mod simd;

@@ -8,7 +8,9 @@ use glam::DVec3;
 use super::Workspace;
 use super::acceleration::Accelerator;
 use super::system::System;
-use super::{Dynamics, Outcome, Progress, ProgressFn, Rejections, Report, STALL_ITERATIONS, SolveOptions, Solver};
+use super::{
+    Dynamics, LinearSolver, Outcome, Progress, ProgressFn, Rejections, Report, STALL_ITERATIONS, SolveOptions, Solver,
+};
 use crate::error::{Error, Result, Status};
 use crate::problem::{Acceleration, Mode};
 
@@ -73,6 +75,9 @@ impl Solver {
         if let Some(system) = &self.system {
             report.analysis_seconds = system.analysis_seconds;
             report.factorisation_seconds = system.factorisation_seconds;
+            report.linear_solver = system.linear.used();
+            report.linear_solver_reason = system.linear.reason().to_owned();
+            report.linear_iterations = u32::try_from(system.linear.iteration_count()).unwrap_or(u32::MAX);
         }
         (report.ordering_count, report.factorisation_count) = (self.counts.orderings, self.counts.factorisations);
         Ok(report)
@@ -97,6 +102,7 @@ impl Solver {
     /// Computes the external terms and, in dynamic mode, moves the points to `y`.
     fn begin(&mut self) -> Result<()> {
         let (Some(system), Some(dynamics)) = (&mut self.system, &self.dynamics) else { return Ok(()) };
+        system.linear.restart_count();
         let Workspace { forces, external, momentum, kept, start } = &mut self.workspace;
         start.clear();
         start.extend_from_slice(&self.points);
@@ -322,6 +328,9 @@ impl Report {
             factorisation_seconds: 0.0,
             local_seconds: 0.0,
             global_seconds: 0.0,
+            linear_solver: LinearSolver::Direct,
+            linear_solver_reason: String::new(),
+            linear_iterations: 0,
         }
     }
 }

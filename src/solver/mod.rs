@@ -10,12 +10,14 @@ mod anderson;
 mod assembly;
 mod free_components;
 mod history;
+mod linear_solver;
 mod local_global;
 mod parallel;
 mod quasi_newton;
 mod report;
 mod system;
 
+pub use linear_solver::LinearSolver;
 pub use report::{Outcome, Progress, Rejections, Report, SolveOptions};
 
 use std::ops::ControlFlow;
@@ -55,6 +57,7 @@ pub struct Solver {
     accelerator: Option<Accelerator>,
     /// Orderings and numeric factorisations made so far.
     counts: SystemCounts,
+    linear_solver: LinearSolver,
     thread_count: usize,
     pool: Option<Arc<rayon::ThreadPool>>,
 }
@@ -337,6 +340,15 @@ impl Solver {
         Ok(())
     }
 
+    /// Sets how the linear system of the global step is solved; the next solve uses it. The iterates agree to about 1e-10 of
+    /// the model's size. [`Report::linear_solver`] says what ran.
+    pub fn set_linear_solver(&mut self, linear_solver: LinearSolver) {
+        if linear_solver != self.linear_solver {
+            self.linear_solver = linear_solver;
+            self.invalidate();
+        }
+    }
+
     /// The violation of every constraint id at the current points, each in its type's unit; 0 for removed ones.
     pub fn violations(&self) -> Vec<f64> {
         self.constraints.violations(&self.points)
@@ -407,7 +419,8 @@ impl Solver {
             self.constraints.compact();
             let inertia = if dynamics.mode == Mode::Dynamic { dynamics.inertia() } else { 0.0 };
             let previous = self.outdated_system.take();
-            self.system = Some(System::new(&self.constraints, &self.points, inertia, previous, &mut self.counts)?);
+            let (points, wish) = (&self.points, self.linear_solver);
+            self.system = Some(System::new(&self.constraints, points, inertia, wish, previous, &mut self.counts)?);
         }
         Ok(())
     }

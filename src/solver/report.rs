@@ -1,6 +1,6 @@
 //! What a solve was asked for and what it found.
 
-use super::Solver;
+use super::{LinearSolver, Solver};
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +91,12 @@ pub struct Report {
     pub local_seconds: f64,
     /// Seconds spent on right-hand sides and linear solves in this call.
     pub global_seconds: f64,
+    /// How linear systems were solved: `Direct` or `ConjugateGradients`.
+    pub linear_solver: LinearSolver,
+    /// Why that way, in words.
+    pub linear_solver_reason: String,
+    /// Iterations of conjugate gradients in all linear solves of this call; 0 with a factor.
+    pub linear_iterations: u32,
 }
 
 /// How often acceleration was held back, by cause.

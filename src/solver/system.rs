@@ -8,6 +8,9 @@
 //! - where that is not enough (rows that leave more than translations free, such as a lone Bending), no point is held, and
 //!   every row gains a small part of its diagonal as a pull towards the current position: a proximal step, with the same
 //!   fixed points. A held point would decide along which free motion the others move.
+//!
+//! The remedies are the same for a factor and for conjugate gradients, and so are the iterates. Whether the third is needed a
+//! vanishing pivot says, or a trial solve.
 
 use std::time::Instant;
 
@@ -15,10 +18,11 @@ use glam::DVec3;
 
 use super::assembly::{Gather, fill, long_constraint_count, new_pattern};
 use super::free_components::{FreeComponent, free_components};
+use super::linear_solver::{LARGEST_FACTOR_BYTES, LinearSolver, LinearSystem};
 use super::parallel::for_parts;
 use crate::constraints::ConstraintSet;
 use crate::error::{Error, Result, Status};
-use crate::linalg::cholesky::{Analysis, Factor, SymmetricMatrix};
+use crate::linalg::cholesky::SymmetricMatrix;
 
 /// Indices (and so targets, roughly) that one chunk of the local step covers: some 10 µs of work, so that splitting costs
 /// little, and some ten chunks per thread of the smallest problem that runs in parallel.
@@ -62,8 +66,7 @@ pub(super) struct SystemCounts {
 pub(super) struct System {
     point_count: usize,
     matrix: SymmetricMatrix,
-    analysis: Analysis,
-    factor: Factor,
+    pub(super) linear: LinearSystem,
     /// Weight times measure, by batch and slot.
     stiffness: Vec<Vec<f64>>,
     chunks: Vec<Chunk>,
@@ -88,12 +91,13 @@ pub(super) struct System {
 }
 
 impl System {
-    /// Assembles and factorises the system of `constraints` over `points`. The analysis of `previous` is
-    /// taken over if its pattern covers the new one. `inertia` (mass over the squared time step) is 0 in static mode.
+    /// Assembles and factorises the system of `constraints` over `points`. The analysis of `previous` is taken over if its
+    /// pattern covers the new one and `wish` is the same. `inertia` (mass over the squared time step) is 0 in static mode.
     pub(super) fn new(
         constraints: &ConstraintSet,
         points: &[DVec3],
         inertia: f64,
+        wish: LinearSolver,
         previous: Option<Self>,
         counts: &mut SystemCounts,
     ) -> Result<Self> {
@@ -106,21 +110,20 @@ impl System {
         let unknown_count = (point_count + long_constraint_count(constraints)).max(1);
         let started = Instant::now();
         let known = previous.filter(|known| known.matrix.dimension() == unknown_count);
-        let (mut matrix, known_analysis) = match known {
-            Some(known) => (known.matrix, Some((known.analysis, known.factor))),
+        let (mut matrix, known_linear) = match known {
+            Some(known) => (known.matrix, Some(known.linear).filter(|linear| linear.wish == wish)),
             None => (new_pattern(constraints, point_count, unknown_count)?, None),
         };
-        let (analysis, factor) = match (fill(&mut matrix, constraints, &stiffness, point_count), known_analysis) {
+        let linear = match (fill(&mut matrix, constraints, &stiffness, point_count), known_linear) {
             (true, Some(known)) => known,
             (covered, _) => {
                 if !covered {
                     matrix = new_pattern(constraints, point_count, unknown_count)?;
                     fill(&mut matrix, constraints, &stiffness, point_count);
                 }
-                let analysis = Analysis::new(&matrix, points)?;
-                counts.orderings = counts.orderings.saturating_add(1);
-                let factor = Factor::new(&analysis)?;
-                (analysis, factor)
+                // Conjugate gradients that were asked for need no ordering.
+                counts.orderings = counts.orderings.saturating_add(u32::from(wish != LinearSolver::ConjugateGradients));
+                LinearSystem::new(&matrix, points, wish, LARGEST_FACTOR_BYTES)?
             }
         };
         let analysis_seconds = started.elapsed().as_secs_f64();
@@ -131,8 +134,7 @@ impl System {
         let mut system = Self {
             point_count,
             matrix,
-            analysis,
-            factor,
+            linear,
             chunks: Vec::new(),
             chunk_bounds: vec![0],
             chunk_energies: Vec::new(),
@@ -305,7 +307,11 @@ impl System {
         for &point in &self.unconstrained {
             self.solution[point as usize] = points[point as usize];
         }
-        self.factor.solve(&mut self.solution, is_parallel);
+        self.linear.solve(&mut self.solution, points, is_parallel);
+        for &point in &self.unconstrained {
+            // Conjugate gradients may round.
+            self.solution[point as usize] = points[point as usize];
+        }
         for component in self.free_components.iter().filter(|component| component.held_stiffness > 0.0) {
             let (solution, count) = (&mut self.solution, component.points.len() as f64);
             let change = |&point: &u32| points[point as usize] - solution[point as usize];
@@ -340,7 +346,7 @@ impl System {
             *diagonal *= 2.0;
         }
         let factorised = self.factorise(counts);
-        if !self.factor.is_singular() {
+        if !self.linear.is_singular() {
             return factorised;
         }
         for component in &mut self.free_components {
@@ -356,12 +362,15 @@ impl System {
         for (i, pull) in self.proximal.iter().enumerate() {
             *self.matrix.diagonal_mut(i) += pull;
         }
-        self.factorise(counts)
+        self.factorise(counts)?;
+        self.linear.expect_proximal_step();
+        Ok(())
     }
 
     fn factorise(&mut self, counts: &mut SystemCounts) -> Result<()> {
-        counts.factorisations = counts.factorisations.saturating_add(1);
-        self.factor.factorise(&self.analysis, &self.matrix)
+        let is_factor = self.linear.used() == LinearSolver::Direct;
+        counts.factorisations = counts.factorisations.saturating_add(u32::from(is_factor));
+        self.linear.prepare(&self.matrix)
     }
 
     fn cut_into_chunks(&mut self, constraints: &ConstraintSet) {

@@ -208,6 +208,8 @@ pub fn report() -> shapeop_solve_report {
         rejected_line_search: u32::MAX,
         ordering_count: u32::MAX,
         factorisation_count: u32::MAX,
+        linear_solver: shapeop_linear_solver::SO_LINEAR_SOLVER_AUTOMATIC,
+        linear_iterations: u32::MAX,
     }
 }
 

@@ -1,0 +1,202 @@
+//! Which linear solver the global step uses: a factor, or conjugate gradients where the factor would not fit.
+//!
+//! The choice needs the ordering and the pattern of the factor, not its numbers, and both take memory in proportion to the
+//! matrix's pattern. It depends on the problem alone, never on the machine.
+
+use glam::DVec3;
+
+use crate::error::{Error, Result, Status};
+use crate::linalg::cholesky::{Analysis, Factor, SymmetricMatrix};
+use crate::linalg::conjugate_gradients::ConjugateGradients;
+
+/// A value of the factor while it is computed: one in the order of the factorisation and one in that of the solves.
+const BYTES_PER_VALUE: u64 = 16;
+
+/// The most bytes that `Automatic` spends on a factor: a third of the 6 GB that a large model may take, as the model, the
+/// fronts of the factorisation and the host have their shares. A factor that fits is the faster per iteration, by a factor of
+/// two on blocks of tetrahedra; conjugate gradients are ready sooner. `docs/mathematics.md` has figures.
+pub(super) const LARGEST_FACTOR_BYTES: u64 = 2_000_000_000;
+
+/// What conjugate gradients with a proximal step ask for, relative to what they do else. Along the motions that the step alone
+/// holds the multigrid cycle underestimates the error, and the errors of all iterations add up.
+const PROXIMAL_TOLERANCE: f64 = 1e-3;
+
+/// How the linear system of the global step is solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(i32)]
+pub enum LinearSolver {
+    /// `Direct` if the predicted factor takes at most 2 GB while it is computed, else `ConjugateGradients`.
+    #[default]
+    Automatic = 0,
+    /// A Cholesky factor, computed once and used in every iteration.
+    Direct = 1,
+    /// Conjugate gradients from the current points, preconditioned by multigrid: little memory, no factor, and solutions to
+    /// some 1e-12 of the model's size.
+    ConjugateGradients = 2,
+}
+
+/// A linear solver for matrices of one pattern.
+pub(super) struct LinearSystem {
+    pub(super) wish: LinearSolver,
+    kind: Kind,
+    /// Why it is the one that it is.
+    reason: String,
+    iterations_before: u64,
+}
+
+enum Kind {
+    Direct {
+        analysis: Analysis,
+        factor: Factor,
+    },
+    /// `None` before the first matrix.
+    Iterative(Option<Box<ConjugateGradients>>),
+}
+
+impl LinearSystem {
+    /// Chooses for the pattern of `matrix`, whose first unknowns lie at `positions`. `largest_bytes` is
+    /// [`LARGEST_FACTOR_BYTES`] but in tests.
+    pub(super) fn new(
+        matrix: &SymmetricMatrix,
+        positions: &[DVec3],
+        wish: LinearSolver,
+        largest_bytes: u64,
+    ) -> Result<Self> {
+        let made = |kind, reason| Ok(Self { wish, kind, reason, iterations_before: 0 });
+        if wish == LinearSolver::ConjugateGradients {
+            return made(Kind::Iterative(None), "as asked for".to_owned());
+        }
+        let analysis = match Analysis::new(matrix, positions) {
+            Ok(analysis) => analysis,
+            // The pattern of the factor alone is beyond 32-bit indices or the memory.
+            Err(error) if error.status() == Status::TooLarge && wish == LinearSolver::Automatic => {
+                return made(Kind::Iterative(None), format!("a factor is out of reach: {error}"));
+            }
+            Err(error) => return Err(error),
+        };
+        let bytes = BYTES_PER_VALUE.saturating_mul(analysis.factor_value_count() as u64);
+        let megabytes = |bytes: u64| format!("{:.1} MB", bytes as f64 / 1e6);
+        if wish == LinearSolver::Automatic && bytes > largest_bytes {
+            let (found, bound) = (megabytes(bytes), megabytes(largest_bytes));
+            return made(Kind::Iterative(None), format!("computing the factor would take {found}, above {bound}"));
+        }
+        let reason = match wish {
+            LinearSolver::Direct => "as asked for".to_owned(),
+            _ => format!("computing the factor takes {}, at most {}", megabytes(bytes), megabytes(largest_bytes)),
+        };
+        let factor = Factor::new(&analysis)?;
+        made(Kind::Direct { analysis, factor }, reason)
+    }
+
+    /// Prepares for solving with `matrix`, whose diagonal is above 0.
+    pub(super) fn prepare(&mut self, matrix: &SymmetricMatrix) -> Result<()> {
+        match &mut self.kind {
+            Kind::Direct { analysis, factor } => factor.factorise(analysis, matrix),
+            Kind::Iterative(gradients) => {
+                // The last one's memory is free before the next one takes its own.
+                *gradients = None;
+                *gradients = Some(Box::new(ConjugateGradients::new(matrix)?));
+                self.iterations_before = 0;
+                Ok(())
+            }
+        }
+    }
+
+    /// Says that the matrix of the last [`Self::prepare`] has the pull of a proximal step.
+    pub(super) fn expect_proximal_step(&mut self) {
+        if let Kind::Iterative(Some(gradients)) = &mut self.kind {
+            gradients.tighten(PROXIMAL_TOLERANCE);
+        }
+    }
+
+    /// True if the matrix of the last [`Self::prepare`] is singular within round-off, or within what conjugate gradients
+    /// can resolve.
+    pub(super) fn is_singular(&mut self) -> bool {
+        match &mut self.kind {
+            Kind::Direct { factor, .. } => factor.is_singular(),
+            Kind::Iterative(gradients) => gradients.as_mut().is_some_and(|gradients| gradients.is_singular(false)),
+        }
+    }
+
+    /// `right_hand_sides` becomes the solution. Conjugate gradients begin at `start`, which may be shorter.
+    pub(super) fn solve(&mut self, right_hand_sides: &mut [DVec3], start: &[DVec3], is_parallel: bool) {
+        match &mut self.kind {
+            Kind::Direct { factor, .. } => factor.solve(right_hand_sides, is_parallel),
+            Kind::Iterative(Some(gradients)) => gradients.solve(right_hand_sides, start, is_parallel),
+            Kind::Iterative(None) => {}
+        }
+    }
+
+    /// `Direct` or `ConjugateGradients`.
+    pub(super) fn used(&self) -> LinearSolver {
+        match &self.kind {
+            Kind::Direct { .. } => LinearSolver::Direct,
+            Kind::Iterative(_) => LinearSolver::ConjugateGradients,
+        }
+    }
+
+    /// Why that one, in words.
+    pub(super) fn reason(&self) -> &str {
+        &self.reason
+    }
+
+    /// Iterations of conjugate gradients since [`Self::restart_count`]; 0 with a factor.
+    pub(super) fn iteration_count(&self) -> u64 {
+        self.all_iterations().saturating_sub(self.iterations_before)
+    }
+
+    /// Counts iterations from 0 again.
+    pub(super) fn restart_count(&mut self) {
+        self.iterations_before = self.all_iterations();
+    }
+
+    fn all_iterations(&self) -> u64 {
+        match &self.kind {
+            Kind::Iterative(Some(gradients)) => gradients.iteration_count(),
+            _ => 0,
+        }
+    }
+}
+
+impl LinearSolver {
+    /// The solver of this number.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn from_number(number: i32) -> Result<Self> {
+        let all = [Self::Automatic, Self::Direct, Self::ConjugateGradients];
+        all.into_iter().find(|solver| *solver as i32 == number).ok_or_else(|| {
+            let reason = format!("expected 0 (automatic), 1 (direct) or 2 (conjugate gradients), found {number}");
+            Error::new(Status::InvalidValue, reason)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn automatic_takes_a_factor_up_to_the_bound_and_conjugate_gradients_beyond() {
+        let chain = |report: &mut dyn FnMut(u32, u32)| (1..100).for_each(|i| report(i, i - 1));
+        let mut matrix = SymmetricMatrix::with_pattern(100, chain).unwrap();
+        (0..100).for_each(|i| *matrix.diagonal_mut(i) = 1.0);
+        let bytes = 16 * Analysis::new(&matrix, &[]).unwrap().factor_value_count() as u64;
+        for (wish, bound, expected, word) in [
+            (LinearSolver::Automatic, LARGEST_FACTOR_BYTES, LinearSolver::Direct, "at most 2000.0 MB"),
+            (LinearSolver::Automatic, bytes, LinearSolver::Direct, "at most"),
+            (LinearSolver::Automatic, bytes - 1, LinearSolver::ConjugateGradients, "above"),
+            (LinearSolver::Direct, 0, LinearSolver::Direct, "as asked for"),
+            (LinearSolver::ConjugateGradients, u64::MAX, LinearSolver::ConjugateGradients, "as asked for"),
+        ] {
+            let mut system = LinearSystem::new(&matrix, &[], wish, bound).unwrap();
+            assert_eq!(system.used(), expected);
+            assert!(system.reason().contains(word), "{}", system.reason());
+            system.prepare(&matrix).unwrap();
+            assert!(!system.is_singular());
+            let mut x = vec![DVec3::ONE; 100];
+            system.solve(&mut x, &[DVec3::ZERO; 100], false);
+            assert!(x.iter().all(|x| (*x - DVec3::ONE).length() < 1e-14));
+        }
+    }
+}
