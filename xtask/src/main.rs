@@ -1,5 +1,6 @@
 //! `cargo xtask`: set-up and checks. No product code.
 
+mod bench;
 mod dist;
 mod docs;
 mod header;
@@ -20,6 +21,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Time the six problems beside compas-shapeop; write docs/benchmarks.md. CI=true: fail if compas-shapeop is missing.
+    Bench(bench::Options),
     /// Build the library and lay out headers and libraries for C hosts.
     Dist {
         /// The folder to fill: lib/, include/, compat/.
@@ -40,6 +43,12 @@ enum Command {
     Show {
         /// What to show.
         area: show::Area,
+        /// Show speed from what the last `cargo xtask bench` measured, instead of measuring again.
+        #[arg(long)]
+        reuse: bool,
+        /// Interleaved repetitions of each measurement of speed.
+        #[arg(long)]
+        repetitions: Option<usize>,
     },
     /// Set up what the tests need, then run all of them. CI=true: fail if anything is missing.
     Test,
@@ -47,10 +56,11 @@ enum Command {
 
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
+        Command::Bench(options) => bench::run(&options),
         Command::Dist { folder, profile } => dist::run(&folder, &profile),
         Command::Header { check } => header::run(check),
         Command::Docs => docs::run(),
-        Command::Show { area } => show::run(area),
+        Command::Show { area, reuse, repetitions } => show::run(area, reuse, repetitions),
         Command::Test => test::run(),
     }
 }

@@ -32,7 +32,7 @@ pub fn run() -> Result<()> {
     let is_ci = std::env::var("CI").as_deref() == Ok("true");
     let missing: Vec<&Tool> = TOOLS.iter().filter(|tool| !tool.is_there()).collect();
     if !missing.is_empty() {
-        install(&missing);
+        install(&missing.iter().map(|tool| tool.package).collect::<Vec<_>>());
     }
     let still_missing: Vec<&str> = missing.iter().filter(|tool| !tool.is_there()).map(|tool| tool.package).collect();
     if is_ci && !still_missing.is_empty() {
@@ -76,8 +76,7 @@ fn quiet(program: &str, arguments: &[&str]) -> bool {
 }
 
 /// Installs Debian packages where that is possible: as root, with apt-get. What it cannot do, the caller finds missing.
-fn install(tools: &[&Tool]) {
-    let packages: Vec<&str> = tools.iter().map(|tool| tool.package).collect();
+pub fn install(packages: &[&str]) {
     let wanted = packages.join(" ");
     if !quiet("apt-get", &["--version"]) || !is_root() {
         println!("Missing: {wanted}. Install them yourself: this needs root and apt-get.");
@@ -90,7 +89,7 @@ fn install(tools: &[&Tool]) {
         shell::run(&mut command).is_ok()
     };
     for try_number in 1..=DOWNLOAD_TRIES {
-        let arguments = [&["install", "--yes", "--no-install-recommends"], packages.as_slice()].concat();
+        let arguments = [&["install", "--yes", "--no-install-recommends"], packages].concat();
         if apt(&["update"]) && apt(&arguments) {
             return;
         }

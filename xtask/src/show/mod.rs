@@ -1,6 +1,7 @@
 //! `cargo xtask show AREA`: what the library promises, measured, each figure beside its target.
 
 mod engine;
+mod speed;
 
 use anyhow::{Result, bail};
 use clap::ValueEnum;
@@ -10,13 +11,16 @@ use clap::ValueEnum;
 pub enum Area {
     /// Demo, parity, recipes on real meshes, a million vertices, random calls of the C functions.
     Engine,
+    /// Times beside compas-shapeop and the floor, threads, scaling, acceleration, a moving handle.
+    Speed,
 }
 
 /// Measures and prints; fails if a figure is short of its target.
-pub fn run(area: Area) -> Result<()> {
+pub fn run(area: Area, reuse: bool, repetitions: Option<usize>) -> Result<()> {
     let mut figures = Figures::default();
     match area {
         Area::Engine => engine::show(&mut figures)?,
+        Area::Speed => speed::show(&mut figures, reuse, repetitions)?,
     }
     println!();
     if figures.short.is_empty() {
@@ -42,6 +46,16 @@ impl Figures {
     /// A figure that must not exceed its target.
     pub fn at_most(&mut self, name: &str, value: f64, target: f64) {
         self.line(name, &number(value), &format!("at most {}", number(target)), value <= target);
+    }
+
+    /// A figure that must reach its target.
+    pub fn at_least(&mut self, name: &str, value: f64, target: f64) {
+        self.line(name, &number(value), &format!("at least {}", number(target)), value >= target);
+    }
+
+    /// A figure that could not be measured: short of its target, whatever that is.
+    pub fn not_measured(&mut self, name: &str, target: &str) {
+        self.line(name, "not measured", target, false);
     }
 
     /// A figure that must be exactly its target.
