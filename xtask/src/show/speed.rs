@@ -179,12 +179,12 @@ fn acceleration(figures: &mut Figures, measurements: &Measurements) {
     );
 }
 
-/// Runs the example, if it is there, on one problem of 10k vertices, and reads its table.
+/// Runs the example, if it is there, on one problem of 10k vertices on two threads, and reads its table.
 fn accelerated(problem: &str) -> Vec<Accelerated> {
     if !shell::root().join("examples/acceleration.rs").is_file() {
         return Vec::new();
     }
-    let arguments = ["run", "--quiet", "--release", "--example", "acceleration", "10000", problem];
+    let arguments = ["run", "--quiet", "--release", "--example", "acceleration", "10000", "2", problem];
     let text = match shell::output(shell::cargo().args(arguments)) {
         Ok(text) => text,
         Err(error) => {
