@@ -148,7 +148,7 @@ impl Level {
         if is_from_zero {
             let start = |b: &Lanes| b.map(|b| b / middle);
             each_chunk(change, is_parallel, |first, part| {
-                part.iter_mut().zip(&b[first..]).for_each(|(d, b)| *d = start(b))
+                part.iter_mut().zip(&b[first..]).for_each(|(d, b)| *d = start(b));
             });
             x.copy_from_slice(change);
         } else {

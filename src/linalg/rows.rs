@@ -200,7 +200,7 @@ mod tests {
     /// A matrix with some entries missing, an empty row and an empty column among them.
     fn example(rows: usize, columns: usize) -> SparseRows {
         let row = |i: usize| {
-            let is_there = |j: &usize| (i * 7 + j * 3) % 4 != 0 && i != 2 && *j != 1;
+            let is_there = |j: &usize| !(i * 7 + j * 3).is_multiple_of(4) && i != 2 && *j != 1;
             (0..columns).filter(is_there).map(|j| (j as u32, (i as f64 - 1.5) * 0.5 + j as f64)).collect()
         };
         SparseRows::from_rows(columns, (0..rows).map(row))

@@ -44,6 +44,7 @@ pub(super) struct LinearSystem {
     iterations_before: u64,
 }
 
+#[allow(clippy::large_enum_variant, reason = "there is one per solver")]
 enum Kind {
     Direct {
         analysis: Analysis,
