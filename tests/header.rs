@@ -18,12 +18,12 @@ fn read(file: &str) -> String {
     fs::read_to_string(root().join(file)).unwrap()
 }
 
-/// `name -> number` of every enumerator with this prefix.
+/// `name -> number` of every error code.
 fn enumerators(header: &str) -> BTreeMap<String, i32> {
-    let numbered = header.lines().filter_map(|line| line.trim().trim_end_matches(',').split_once(" = "));
-    let own = numbered.filter(|(name, _)| name.starts_with("SO_") && !name.contains("SO_OUTCOME"));
-    let own = own.filter(|(name, _)| !name.contains("SO_PROJECTION") && !name.contains("SO_ACCELERATION"));
-    own.map(|(name, number)| (name.to_owned(), number.parse().unwrap())).collect()
+    let (_, from) = header.split_once("enum shapeop_err {").unwrap();
+    let (codes, _) = from.split_once('}').unwrap();
+    let numbered = codes.lines().filter_map(|line| line.trim().trim_end_matches(',').split_once(" = "));
+    numbered.map(|(name, number)| (name.to_owned(), number.parse().unwrap())).collect()
 }
 
 /// The names of the functions that lines with `marker` outside of comments declare or define.
