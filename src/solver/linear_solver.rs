@@ -51,7 +51,7 @@ enum Kind {
         factor: Factor,
     },
     /// `None` before the first matrix.
-    Iterative(Option<Box<ConjugateGradients>>),
+    Iterative(Option<ConjugateGradients>),
 }
 
 impl LinearSystem {
@@ -96,7 +96,7 @@ impl LinearSystem {
             Kind::Iterative(gradients) => {
                 // The last one's memory is free before the next one takes its own.
                 *gradients = None;
-                *gradients = Some(Box::new(ConjugateGradients::new(matrix)?));
+                *gradients = Some(ConjugateGradients::new(matrix)?);
                 self.iterations_before = 0;
                 Ok(())
             }
