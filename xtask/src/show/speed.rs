@@ -24,6 +24,9 @@ const TETS_OF_LIBSHAPEOP: [f64; 2] = [47_998.0, 768.0];
 /// The relative errors of the energy that [`Accelerated`] has evaluations for.
 const ERRORS: [&str; 3] = ["1e-3", "1e-6", "1e-9"];
 
+/// The method with its default memory, as the example calls it.
+const DEFAULT_METHOD: &str = "quasi-Newton 5";
+
 pub fn show(figures: &mut Figures, reuse: bool, repetitions: Option<usize>) -> Result<()> {
     let measurements = if reuse { bench::last()? } else { bench::measure_all(repetitions)? };
     println!("\n{}, measured on {}", measurements.machine, measurements.date);
@@ -156,12 +159,12 @@ fn acceleration(figures: &mut Figures, measurements: &Measurements) {
             _ => {}
         }
     }
-    figures.group("acceleration, 10k");
-    let best = |runs: &[Accelerated], which: usize| {
-        let reached = runs.iter().filter(|run| run.method != "plain").filter_map(|run| run.reached[which]);
-        reached.min_by(|a, b| a.0.total_cmp(&b.0))
+    figures.group(&format!("acceleration with {DEFAULT_METHOD}, 10k"));
+    // One method for all, chosen beforehand: the best of many would flatter.
+    let with_default = |runs: &[Accelerated], which: usize| {
+        runs.iter().find(|run| run.method == DEFAULT_METHOD).and_then(|run| run.reached[which])
     };
-    let own = best(&planar, 1);
+    let own = with_default(&planar, 1);
     at_most(figures, "planar_quads: evaluations to 1e-6", own.map(|own| own.0), 45.0);
     // The peer's iterates are those of the plain way, so it needs as many evaluations.
     let sooner = || {
@@ -174,7 +177,7 @@ fn acceleration(figures: &mut Figures, measurements: &Measurements) {
     at_most(
         figures,
         "squares: evaluations to plain's energy after 2000",
-        best(&squares, 3).map(|reached| reached.0),
+        with_default(&squares, 3).map(|reached| reached.0),
         80.0,
     );
 }
