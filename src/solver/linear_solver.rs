@@ -44,7 +44,6 @@ pub(super) struct LinearSystem {
     iterations_before: u64,
 }
 
-#[allow(clippy::large_enum_variant, reason = "there is one per solver")]
 enum Kind {
     Direct {
         analysis: Analysis,
