@@ -403,20 +403,22 @@ fn backward_panel<const W: usize, const FMA: bool>(
 ) {
     let (inverse, panel) = panel.split_at(W * W);
     let mut sums = [[0.0; 4]; W];
-    let mut panel = panel.chunks_exact(W);
+    // From the last row to the first: the factor is then read in one direction from its end to its beginning, which the
+    // memory foresees.
+    let mut panel = panel.chunks_exact(W).rev();
     let mut add = |row: &[f64], x: Lanes| {
         for (sum, &value) in sums.iter_mut().zip(row) {
             *sum = add_scaled::<FMA>(*sum, value, x);
         }
     };
-    for (x, row) in x[first + W..last].iter().zip(&mut panel) {
-        add(row, *x);
+    for (&i, row) in top_rows.iter().rev().zip(&mut panel) {
+        add(row, top[i as usize]);
     }
-    for (&i, row) in rows.iter().zip(&mut panel) {
+    for (&i, row) in rows.iter().rev().zip(&mut panel) {
         add(row, x[i as usize]);
     }
-    for (&i, row) in top_rows.iter().zip(&mut panel) {
-        add(row, top[i as usize]);
+    for (x, row) in x[first + W..last].iter().rev().zip(&mut panel) {
+        add(row, *x);
     }
     let own = &mut x[first..first + W];
     let mut t = [[0.0; 4]; W];
