@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Constraint, Rows, Stencil, TypeInfo};
+use super::{Constraint, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{F4, V4};
 use crate::linalg::simd::{Kernel, dispatch};
 
@@ -62,57 +62,108 @@ pub(crate) trait Batch: Send + Sync {
     fn clone_box(&self) -> Box<dyn Batch>;
 }
 
-/// Lists of one kind behind each other. A list that is replaced by one of another length moves to the end.
+/// Lists of one kind behind each other.
 #[derive(Clone, Debug)]
 struct Lists<V> {
-    spans: Vec<(usize, usize)>,
+    places: Places,
     values: Vec<V>,
-    /// How many values no list uses any more.
-    unused: usize,
+}
+
+#[derive(Clone, Debug)]
+enum Places {
+    /// So many lists of one length, in order and without gaps: the rule, which takes no memory per list.
+    Even { count: usize, length: usize },
+    /// Where each list begins and ends, and how many values no list uses any more: a list that is replaced by one of another
+    /// length moves to the end.
+    Uneven { spans: Vec<(usize, usize)>, unused: usize },
 }
 
 impl<V: Copy> Lists<V> {
     fn new() -> Self {
-        Self { spans: Vec::new(), values: Vec::new(), unused: 0 }
+        Self { places: Places::Even { count: 0, length: 0 }, values: Vec::new() }
     }
 
+    fn len(&self) -> usize {
+        match &self.places {
+            Places::Even { count, .. } => *count,
+            Places::Uneven { spans, .. } => spans.len(),
+        }
+    }
+
+    #[inline(always)]
     fn get(&self, i: usize) -> &[V] {
-        &self.values[self.spans[i].0..self.spans[i].1]
+        match &self.places {
+            Places::Even { length, .. } => &self.values[i * length..(i + 1) * length],
+            Places::Uneven { spans, .. } => &self.values[spans[i].0..spans[i].1],
+        }
     }
 
     /// Where list `i` begins; for the number of lists, where the next one will.
+    #[inline(always)]
     fn start(&self, i: usize) -> usize {
-        self.spans.get(i).map_or(self.values.len(), |span| span.0)
+        match &self.places {
+            Places::Even { length, .. } => i * length,
+            Places::Uneven { spans, .. } => spans.get(i).map_or(self.values.len(), |span| span.0),
+        }
+    }
+
+    /// True if the four lists from `i` on are of `length`.
+    #[inline(always)]
+    fn are_four_of(&self, length: usize, i: usize) -> bool {
+        match &self.places {
+            Places::Even { length: all, .. } => *all == length,
+            Places::Uneven { spans, .. } => spans[i..i + 4].iter().all(|(start, end)| end - start == length),
+        }
     }
 
     /// Appends a list, written by `append` to the end of the values.
     fn push_with<R>(&mut self, append: impl FnOnce(&mut Vec<V>) -> R) -> R {
         let start = self.values.len();
         let result = append(&mut self.values);
-        self.spans.push((start, self.values.len()));
+        let new = self.values.len() - start;
+        match &mut self.places {
+            Places::Even { count: count @ 0, length } => (*count, *length) = (1, new),
+            Places::Even { count, length } if *length == new => *count += 1,
+            _ => self.spans().push((start, start + new)),
+        }
         result
     }
 
     fn replace(&mut self, i: usize, list: &[V]) {
-        let (start, end) = self.spans[i];
-        if list.len() == end - start {
-            self.values[start..end].copy_from_slice(list);
+        let (start, length) = (self.start(i), self.get(i).len());
+        if list.len() == length {
+            self.values[start..start + length].copy_from_slice(list);
             return;
         }
-        self.unused += end - start;
-        self.spans[i] = (self.values.len(), self.values.len() + list.len());
+        let end = self.values.len();
+        self.spans()[i] = (end, end + list.len());
         self.values.extend_from_slice(list);
-        if self.unused > self.values.len() / 2 {
-            self.retain(&vec![true; self.spans.len()]);
+        if let Places::Uneven { unused, .. } = &mut self.places {
+            *unused += length;
+            if *unused > self.values.len() / 2 {
+                self.retain(&vec![true; self.len()]);
+            }
         }
     }
 
     fn retain(&mut self, keep: &[bool]) {
         let mut kept = Self::new();
-        for i in (0..self.spans.len()).filter(|&i| keep[i]) {
+        for i in (0..self.len()).filter(|&i| keep[i]) {
             kept.push_with(|values| values.extend_from_slice(self.get(i)));
         }
         *self = kept;
+    }
+
+    /// The places as spans, for lists that are not even any more.
+    fn spans(&mut self) -> &mut Vec<(usize, usize)> {
+        if let Places::Even { count, length } = self.places {
+            let spans = (0..count).map(|i| (i * length, (i + 1) * length)).collect();
+            self.places = Places::Uneven { spans, unused: 0 };
+        }
+        match &mut self.places {
+            Places::Uneven { spans, .. } => spans,
+            Places::Even { .. } => unreachable!("made uneven above"),
+        }
     }
 }
 
@@ -265,9 +316,6 @@ impl<T: Constraint> Batch for TypedBatch<T> {
     }
 }
 
-/// Points of the longest constraints that are projected four at a time.
-const LONGEST_OF_FOUR: usize = 8;
-
 /// What [`Constraint::project_four`] sees of four constraints besides their points.
 #[derive(Clone, Copy, Debug)]
 pub struct Four<'a, T> {
@@ -312,24 +360,31 @@ impl<T: Constraint> Kernel for Project<'_, T> {
         let mut slot = slots.start;
         while slot < slots.end {
             let k = batch.indices.get(slot).len();
-            let is_four = slot + 4 <= slots.end
-                && k <= LONGEST_OF_FOUR
-                && T::takes_four(k)
-                && (1..4).all(|i| batch.indices.get(slot + i).len() == k);
+            let is_four = slot + 4 <= slots.end && T::takes_four(k) && batch.indices.are_four_of(k, slot);
             let count = if is_four { 4 } else { 1 };
             let mut is_left = [true; 4];
             if is_four {
-                let start = batch.target_offset(slot) - first;
-                let end = batch.target_offset(slot + 4) - first;
-                is_left = batch.project_four::<FMA>(slot, k, points, &mut targets[start..end]);
+                let four = &mut targets[batch.target_offset(slot) - first..batch.target_offset(slot + 4) - first];
+                is_left = batch.project_four::<FMA>(slot, k, points, four);
             }
-            for i in (slot..slot + count).filter(|i| is_left[i - slot]) {
-                let (start, end) = (batch.target_offset(i) - first, batch.target_offset(i + 1) - first);
-                batch.rest[i].project(batch.scalars.get(i), batch.stencil(i, points), &mut targets[start..end]);
+            if is_left != [false; 4] {
+                for i in (slot..slot + count).filter(|i| is_left[i - slot]) {
+                    let (start, end) = (batch.target_offset(i) - first, batch.target_offset(i + 1) - first);
+                    batch.rest[i].project(batch.scalars.get(i), batch.stencil(i, points), &mut targets[start..end]);
+                }
             }
             slot += count;
         }
     }
+}
+
+/// True if constraints of `T` can have `k` points.
+const fn has_points<T: Constraint>(k: usize) -> bool {
+    let most = match T::INFO.greatest_indices {
+        Some(most) => most,
+        None => usize::MAX,
+    };
+    T::INFO.least_indices <= k && k <= most
 }
 
 impl<T: Constraint> TypedBatch<T> {
@@ -342,25 +397,49 @@ impl<T: Constraint> TypedBatch<T> {
         points: &[DVec3],
         targets: &mut [DVec3],
     ) -> [bool; 4] {
-        let slots = [slot, slot + 1, slot + 2, slot + 3];
-        let indices = slots.map(|slot| &self.indices.get(slot)[..k]);
-        let mut x = [V4::ZERO; LONGEST_OF_FOUR];
-        let x = &mut x[..k];
-        for (j, x) in x.iter_mut().enumerate() {
-            *x = V4::gather(indices.map(|indices| points[indices[j] as usize]));
+        // With the number of points as a constant, they stay in registers.
+        macro_rules! by_point_count {
+            ($($k:literal),*) => {
+                match k {
+                    $($k if const { has_points::<T>($k) } => self.project_four_of::<$k, FMA>(slot, points, targets),)*
+                    _ => [true; 4],
+                }
+            };
         }
+        by_point_count!(1, 2, 3, 4, 5, 6, 7, 8)
+    }
+
+    #[inline(always)]
+    fn project_four_of<const K: usize, const FMA: bool>(
+        &self,
+        slot: usize,
+        points: &[DVec3],
+        targets: &mut [DVec3],
+    ) -> [bool; 4] {
+        let slots = [slot, slot + 1, slot + 2, slot + 3];
+        let indices = slots.map(|slot| &self.indices.get(slot)[..K]);
+        let mut x: [V4; K] = std::array::from_fn(|j| V4::gather(indices.map(|indices| points[indices[j] as usize])));
+        let rows = match T::INFO.rows {
+            Rows::Centred => K,
+            Rows::Linear(rows) => rows,
+        };
         if T::INFO.rows == Rows::Centred {
             // Summed relative to the first point: far from the origin the mean keeps the digits that differences have.
             let first = x[0];
             let sum = x[1..].iter().fold(V4::ZERO, |sum, &x| sum + (x - first));
-            let mean = first + sum * F4::splat(1.0 / k as f64);
+            let mean = first + sum * F4::splat(1.0 / K as f64);
             x.iter_mut().for_each(|x| *x = *x - mean);
         }
-        let rows = targets.len() / 4;
-        let mut four_targets = [V4::ZERO; LONGEST_OF_FOUR];
-        let four =
-            Four { constraints: slots.map(|slot| &self.rest[slot]), scalars: slots.map(|s| self.scalars.get(s)) };
-        let is_left = T::project_four::<FMA>(four, x, &mut four_targets[..rows]);
+        // A type has at most as many rows as points.
+        let mut four_targets = [V4::ZERO; K];
+        let (rest, scalars) = (&self.rest[slot..slot + 4], slots.map(|slot| self.scalars.get(slot)));
+        let scalars = match T::INFO.scalars {
+            // So that no access needs a check.
+            Scalars::Named(names) => scalars.map(|scalars| &scalars[..names.len()]),
+            _ => scalars,
+        };
+        let four = Four { constraints: std::array::from_fn(|i| &rest[i]), scalars };
+        let is_left = T::project_four::<FMA>(four, &x, &mut four_targets[..rows]);
         for (lane, targets) in targets.chunks_exact_mut(rows).enumerate() {
             for (target, four) in targets.iter_mut().zip(&four_targets) {
                 *target = four.lane(lane);
