@@ -19,6 +19,7 @@ use glam::DVec3;
 
 use super::nested_dissection::{self, Graph};
 use super::panels::{Panels, Supernodes};
+use super::simd::{Lanes, lanes, vector};
 use crate::error::{Error, Result, Status};
 
 /// A pivot of the unit-diagonal matrix of `dimension` rows at or below this is round-off: the row depends on the ones before
@@ -340,19 +341,42 @@ impl Factor {
         self.is_singular
     }
 
-    /// Solves for x, y and z in one pass, on the current rayon pool if `is_parallel`: `right_hand_sides` (the matrix's
-    /// dimension) becomes the solution, the same bits either way. Allocates nothing.
+    /// Where each unknown of the matrix lies in [`Self::rows_mut`].
+    pub fn place(&self) -> &[u32] {
+        &self.place
+    }
+
+    /// What the right-hand side of each unknown is to be multiplied by before, and its solution after [`Self::solve_rows`].
+    pub fn scale(&self) -> &[f64] {
+        &self.scale
+    }
+
+    /// Right-hand sides before, solutions after [`Self::solve_rows`]: scaled, and in the order of the factor.
+    pub fn rows(&self) -> &[Lanes] {
+        self.panels.unknowns()
+    }
+
+    /// The rows, to be written.
+    pub fn rows_mut(&mut self) -> &mut [Lanes] {
+        self.panels.unknowns_mut()
+    }
+
+    /// Solves for x, y and z in one pass, on the current rayon pool if `is_parallel`, the same bits either way. Allocates
+    /// nothing.
+    pub fn solve_rows(&mut self, is_parallel: bool) {
+        self.panels.solve(is_parallel);
+    }
+
+    /// As [`Self::solve_rows`], in the matrix's own order and scale: `right_hand_sides` (its dimension) becomes the solution.
     pub fn solve(&mut self, right_hand_sides: &mut [DVec3], is_parallel: bool) {
         let x = self.panels.unknowns_mut();
         for ((rhs, scale), &place) in right_hand_sides.iter().zip(&self.scale).zip(&self.place) {
-            let scaled = *rhs * *scale;
-            x[place as usize] = [scaled.x, scaled.y, scaled.z, 0.0];
+            x[place as usize] = lanes(*rhs * *scale);
         }
         self.panels.solve(is_parallel);
         let x = self.panels.unknowns_mut();
         for ((solution, scale), &place) in right_hand_sides.iter_mut().zip(&self.scale).zip(&self.place) {
-            let [a, b, c, _] = x[place as usize];
-            *solution = *scale * DVec3::new(a, b, c);
+            *solution = *scale * vector(x[place as usize]);
         }
     }
 }

@@ -14,7 +14,7 @@ use glam::DVec3;
 use super::cholesky::SymmetricMatrix;
 use super::multilevel::Multilevel;
 use super::rows::{CHUNK, SparseRows, each_chunk, fill};
-use super::simd::Lanes;
+use super::simd::{Lanes, lanes, vector};
 use crate::error::{Error, Result, Status};
 
 /// A coordinate is solved when no entry of the preconditioned residual `M⁻¹(b − A x)` is above this part of the extent of
@@ -107,7 +107,7 @@ impl ConjugateGradients {
     /// becomes the solution, the same bits either way. `start` is where to begin; unknowns beyond its length, which must
     /// not depend on each other, begin at what their own rows say. Where the numbers overflow the solution is not
     /// finite. Allocates nothing.
-    pub fn solve(&mut self, right_hand_sides: &mut [DVec3], start: &[DVec3], is_parallel: bool) {
+    pub fn solve(&mut self, right_hand_sides: &mut [Lanes], start: &[DVec3], is_parallel: bool) {
         // Where a model lies must change neither the tolerance nor the round-off: solve about the middle of the start.
         let low = start.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = start.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -116,7 +116,7 @@ impl ConjugateGradients {
         let (matrix, b, _) = self.preconditioner.parts();
         for (i, (x, b)) in self.x.iter_mut().zip(b.iter_mut()).enumerate() {
             *x = start.get(i).map_or([0.0; 4], |start| lanes((*start - origin) / self.scale[i]));
-            *b = lanes(self.scale[i] * (right_hand_sides[i] - self.row_sums[i] * origin));
+            *b = lanes(self.scale[i] * (vector(right_hand_sides[i]) - self.row_sums[i] * origin));
         }
         // From right-hand side to residual, in place.
         matrix.apply(0.0, 1.0, &[], &self.x, &mut self.image, is_parallel);
@@ -137,11 +137,8 @@ impl ConjugateGradients {
             self.iteration_count += u64::from(iterations.unwrap_or(0));
         }
         for ((solution, x), scale) in right_hand_sides.iter_mut().zip(&self.x).zip(&self.scale) {
-            *solution = origin + *scale * DVec3::new(x[0], x[1], x[2]);
-            if !is_finite {
-                // Whoever asked looks at this, and refuses it.
-                *solution = DVec3::NAN;
-            }
+            // Whoever asked looks at what is not finite, and refuses it.
+            *solution = if is_finite { lanes(origin + *scale * vector(*x)) } else { [f64::NAN; 4] };
         }
     }
 
@@ -220,10 +217,6 @@ impl ConjugateGradients {
         let scale = &self.scale;
         sum(&mut self.sums, is_parallel, residual, preconditioned, |i| scale[i])
     }
-}
-
-fn lanes(vector: DVec3) -> Lanes {
-    [vector.x, vector.y, vector.z, 0.0]
 }
 
 /// `x ← x + factor y`, with a factor for each coordinate.
@@ -305,6 +298,12 @@ mod tests {
         (shift..count + shift).map(|i| DVec3::new((i % 7) as f64, (i % 11) as f64 - 5.0, (i % 3) as f64)).collect()
     }
 
+    fn solve(gradients: &mut ConjugateGradients, x: &mut [DVec3], start: &[DVec3], is_parallel: bool) {
+        let mut rows: Vec<Lanes> = x.iter().map(|x| lanes(*x)).collect();
+        gradients.solve(&mut rows, start, is_parallel);
+        x.iter_mut().zip(rows).for_each(|(x, row)| *x = vector(row));
+    }
+
     /// Solutions of the factor and of conjugate gradients, and how many iterations those took.
     fn both(matrix: &SymmetricMatrix, right: &[DVec3], start: &[DVec3]) -> (Vec<DVec3>, Vec<DVec3>, u64) {
         let analysis = Analysis::new(matrix, &[]).unwrap();
@@ -313,7 +312,7 @@ mod tests {
         let (mut direct, mut iterative) = (right.to_vec(), right.to_vec());
         factor.solve(&mut direct, false);
         let mut gradients = ConjugateGradients::new(matrix).unwrap();
-        gradients.solve(&mut iterative, start, false);
+        solve(&mut gradients, &mut iterative, start, false);
         (direct, iterative, gradients.iteration_count())
     }
 
@@ -378,13 +377,13 @@ mod tests {
         // Nothing at all to solve for, and overflow.
         let mut gradients = ConjugateGradients::new(&matrix).unwrap();
         let mut zero = vec![DVec3::ZERO; 1000];
-        gradients.solve(&mut zero, &[DVec3::ZERO; 1000], false);
+        solve(&mut gradients, &mut zero, &[DVec3::ZERO; 1000], false);
         assert!(zero.iter().all(|x| *x == DVec3::ZERO));
         let mut huge = vec![DVec3::splat(1e308); 1000];
-        gradients.solve(&mut huge, &vec![DVec3::splat(-1e308); 1000], false);
+        solve(&mut gradients, &mut huge, &vec![DVec3::splat(-1e308); 1000], false);
         assert!(huge.iter().all(|x| !x.is_finite()));
         let mut again = rhs.clone();
-        gradients.solve(&mut again, &solution, false);
+        solve(&mut gradients, &mut again, &solution, false);
         assert_eq!(again, found, "an overflow left its traces");
     }
 
@@ -396,7 +395,7 @@ mod tests {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().unwrap();
             let mut gradients = ConjugateGradients::new(&matrix).unwrap();
             let mut x = vectors(4096, 0);
-            pool.install(|| gradients.solve(&mut x, &start, thread_count > 1));
+            pool.install(|| solve(&mut gradients, &mut x, &start, thread_count > 1));
             (x, gradients.iteration_count())
         };
         let one = run(1);

@@ -14,7 +14,7 @@ use glam::DVec3;
 
 use super::cholesky::{Analysis, Factor, SymmetricMatrix};
 use super::rows::{SparseRows, each_chunk};
-use super::simd::Lanes;
+use super::simd::{Lanes, lanes, vector};
 use crate::error::Result;
 
 /// Up to so many unknowns a level gets a factor: solving with it then costs far less than one product on the first.
@@ -167,11 +167,11 @@ impl Level {
             return;
         };
         for (room, b) in room.iter_mut().zip(&self.b) {
-            *room = DVec3::new(b[0], b[1], b[2]);
+            *room = vector(*b);
         }
         factor.solve(room, false);
         for (x, room) in self.x.iter_mut().zip(room) {
-            *x = [room.x, room.y, room.z, 0.0];
+            *x = lanes(*room);
         }
     }
 }

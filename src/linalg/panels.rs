@@ -124,6 +124,11 @@ impl Panels {
     }
 
     /// Right-hand sides before, the solution after [`Self::solve`].
+    pub fn unknowns(&self) -> &[Lanes] {
+        &self.x
+    }
+
+    /// The unknowns, to be written.
     pub fn unknowns_mut(&mut self) -> &mut [Lanes] {
         &mut self.x
     }

@@ -4,6 +4,8 @@
 //! AVX2 and FMA a product and a sum round once, without them twice, so the last bits of results differ between
 //! instruction sets. On one machine they are always the same.
 
+use glam::DVec3;
+
 /// A computation that is compiled for more than one instruction set.
 pub trait Kernel {
     /// What it computes.
@@ -35,6 +37,18 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
 
 /// Three coordinates and a zero, or one number of four constraints.
 pub type Lanes = [f64; 4];
+
+/// The coordinates of a vector, and a zero.
+#[inline(always)]
+pub fn lanes(vector: DVec3) -> Lanes {
+    [vector.x, vector.y, vector.z, 0.0]
+}
+
+/// The vector of three coordinates.
+#[inline(always)]
+pub fn vector(lanes: Lanes) -> DVec3 {
+    DVec3::new(lanes[0], lanes[1], lanes[2])
+}
 
 /// `a b + c`, rounded once if `FMA`.
 #[inline(always)]

@@ -4,46 +4,117 @@
 //! unknown each, their mean `m`: minimising `½ s Σ ‖x_i − m − p_i‖²` over `x` and `m` has the same minimiser in `x`, and
 //! costs `k + 1` entries. Their right-hand side is 0, as the targets have no mean.
 
+use glam::DVec3;
+
+use super::linear_solver::Order;
 use crate::constraints::{ConstraintSet, Rows};
 use crate::error::Result;
 use crate::linalg::cholesky::SymmetricMatrix;
+use crate::linalg::simd::{Kernel, Lanes, add_scaled, dispatch, lanes, vector};
 
 /// Centred constraints of more points than this get an unknown of their own. Up to here the block has fewer entries
 /// than the fill that a further unknown would cause when it is eliminated.
 const LONGEST_DENSE_STENCIL: usize = 12;
 
-/// Points whose right-hand sides one chunk gathers.
+/// Points, or rows of the linear solver, in one chunk.
 const CHUNK_POINTS: usize = 1024;
 
-/// `Aᵀ` by rows: the right-hand side of each point as a sum over targets, in a fixed order.
+/// `Aᵀ` by rows of the linear solver, in its order and scale: each right-hand side as a sum over targets, in a fixed order.
+#[derive(Default)]
 pub(super) struct Gather {
-    pub(super) starts: Vec<usize>,
+    starts: Vec<usize>,
     /// The target of each entry.
-    pub(super) targets: Vec<u32>,
+    targets: Vec<u32>,
     /// The coefficient of each entry.
-    pub(super) coefficients: Vec<f64>,
-    /// Where the chunks of points begin, and the number of points.
+    coefficients: Vec<f64>,
+    /// The unknown of each row.
+    unknowns: Vec<u32>,
+    /// What terms of a row's unknown that are not in `Aᵀ` are multiplied by.
+    scale: Vec<f64>,
+    /// Where the chunks of rows begin, and the number of rows.
     pub(super) bounds: Vec<usize>,
 }
 
 impl Gather {
-    pub(super) fn new(constraints: &ConstraintSet, stiffness: &[Vec<f64>], point_count: usize) -> Self {
-        let mut starts = vec![0_usize; point_count + 1];
-        each_target(constraints, stiffness, |point, _, _| starts[point as usize + 1] += 1);
-        for i in 0..point_count {
+    pub(super) fn new(constraints: &ConstraintSet, stiffness: &[Vec<f64>], order: Order<'_>) -> Self {
+        let row_count = order.place.len();
+        let row = |unknown: u32| order.place[unknown as usize] as usize;
+        let mut starts = vec![0_usize; row_count + 1];
+        each_target(constraints, stiffness, |point, _, _| starts[row(point) + 1] += 1);
+        for i in 0..row_count {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
-        let mut targets = vec![0_u32; starts[point_count]];
-        let mut coefficients = vec![0.0; starts[point_count]];
+        let mut targets = vec![0_u32; starts[row_count]];
+        let mut coefficients = vec![0.0; starts[row_count]];
         each_target(constraints, stiffness, |point, target, coefficient| {
-            let place = &mut next[point as usize];
-            (targets[*place], coefficients[*place]) = (target, coefficient);
+            let place = &mut next[row(point)];
+            (targets[*place], coefficients[*place]) = (target, coefficient * order.scale[point as usize]);
             *place += 1;
         });
-        let mut bounds: Vec<usize> = (0..point_count).step_by(CHUNK_POINTS).collect();
-        bounds.push(point_count);
-        Self { starts, targets, coefficients, bounds }
+        let (mut unknowns, mut scale) = (vec![0; row_count], vec![0.0; row_count]);
+        for (unknown, (&place, &factor)) in (0..).zip(order.place.iter().zip(order.scale)) {
+            (unknowns[place as usize], scale[place as usize]) = (unknown, factor);
+        }
+        Self { starts, targets, coefficients, unknowns, scale, bounds: chunk_bounds(row_count) }
+    }
+
+    /// The number of entries.
+    pub(super) fn len(&self) -> usize {
+        self.targets.len()
+    }
+
+    /// Writes the rows from `first` on: the sums of `targets`, plus the terms of their points. `external` and `pulls` have
+    /// one entry per point, or none at all; a pull is towards where its point is now.
+    pub(super) fn write_rows(
+        &self,
+        first: usize,
+        rows: &mut [Lanes],
+        targets: &[DVec3],
+        external: &[DVec3],
+        pulls: &[f64],
+        points: &[DVec3],
+    ) {
+        dispatch(WriteRows { gather: self, first, rows: &mut *rows, targets });
+        if external.is_empty() && pulls.is_empty() {
+            return;
+        }
+        for (i, row) in (first..).zip(rows) {
+            let unknown = self.unknowns[i] as usize;
+            let external = external.get(unknown).copied().unwrap_or_default();
+            let pull = pulls.get(unknown).map_or(DVec3::ZERO, |pull| *pull * points[unknown]);
+            *row = lanes(vector(*row) + self.scale[i] * (external + pull));
+        }
+    }
+}
+
+/// Chunks of [`CHUNK_POINTS`]: where they begin, and `count`.
+pub(super) fn chunk_bounds(count: usize) -> Vec<usize> {
+    let mut bounds: Vec<usize> = (0..count).step_by(CHUNK_POINTS).collect();
+    bounds.push(count);
+    bounds
+}
+
+struct WriteRows<'a> {
+    gather: &'a Gather,
+    first: usize,
+    rows: &'a mut [Lanes],
+    targets: &'a [DVec3],
+}
+
+impl Kernel for WriteRows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        let Self { gather, first, rows, targets } = self;
+        for (i, row) in (first..).zip(rows) {
+            let entries = gather.starts[i]..gather.starts[i + 1];
+            let pairs = gather.targets[entries.clone()].iter().zip(&gather.coefficients[entries]);
+            *row = pairs.fold([0.0; 4], |sum, (&target, &coefficient)| {
+                add_scaled::<FMA>(sum, coefficient, lanes(targets[target as usize]))
+            });
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use glam::DVec3;
 use crate::error::{Error, Result, Status};
 use crate::linalg::cholesky::{Analysis, Factor, SymmetricMatrix};
 use crate::linalg::conjugate_gradients::ConjugateGradients;
+use crate::linalg::simd::Lanes;
 
 /// A value of the factor while it is computed: one in the order of the factorisation and one in that of the solves.
 const BYTES_PER_VALUE: u64 = 16;
@@ -35,7 +36,8 @@ pub enum LinearSolver {
     ConjugateGradients = 2,
 }
 
-/// A linear solver for matrices of one pattern.
+/// A linear solver for matrices of one pattern. It works on *rows* in an order and a scale of its own: see
+/// [`LinearSystem::order`].
 pub(super) struct LinearSystem {
     pub(super) wish: LinearSolver,
     kind: Kind,
@@ -49,8 +51,22 @@ enum Kind {
         analysis: Analysis,
         factor: Factor,
     },
-    /// `None` before the first matrix.
-    Iterative(Option<ConjugateGradients>),
+    Iterative {
+        /// `None` before the first matrix.
+        gradients: Option<ConjugateGradients>,
+        rows: Vec<Lanes>,
+        /// The matrix's own order and scale.
+        place: Vec<u32>,
+        scale: Vec<f64>,
+    },
+}
+
+/// Where an unknown of the matrix lies among the rows, and what its right-hand side is to be multiplied by, and its solution
+/// once more.
+#[derive(Clone, Copy)]
+pub(super) struct Order<'a> {
+    pub(super) place: &'a [u32],
+    pub(super) scale: &'a [f64],
 }
 
 impl LinearSystem {
@@ -63,14 +79,19 @@ impl LinearSystem {
         largest_bytes: u64,
     ) -> Result<Self> {
         let made = |kind, reason| Ok(Self { wish, kind, reason, iterations_before: 0 });
+        let iterative = || {
+            let n = matrix.dimension();
+            let (rows, place, scale) = (vec![[0.0; 4]; n], (0..n as u32).collect(), vec![1.0; n]);
+            Kind::Iterative { gradients: None, rows, place, scale }
+        };
         if wish == LinearSolver::ConjugateGradients {
-            return made(Kind::Iterative(None), "as asked for".to_owned());
+            return made(iterative(), "as asked for".to_owned());
         }
         let analysis = match Analysis::new(matrix, positions) {
             Ok(analysis) => analysis,
             // The pattern of the factor alone is beyond 32-bit indices or the memory.
             Err(error) if error.status() == Status::TooLarge && wish == LinearSolver::Automatic => {
-                return made(Kind::Iterative(None), format!("a factor is out of reach: {error}"));
+                return made(iterative(), format!("a factor is out of reach: {error}"));
             }
             Err(error) => return Err(error),
         };
@@ -78,7 +99,7 @@ impl LinearSystem {
         let megabytes = |bytes: u64| format!("{:.1} MB", bytes as f64 / 1e6);
         if wish == LinearSolver::Automatic && bytes > largest_bytes {
             let (found, bound) = (megabytes(bytes), megabytes(largest_bytes));
-            return made(Kind::Iterative(None), format!("computing the factor would take {found}, above {bound}"));
+            return made(iterative(), format!("computing the factor would take {found}, above {bound}"));
         }
         let reason = match wish {
             LinearSolver::Direct => "as asked for".to_owned(),
@@ -92,7 +113,7 @@ impl LinearSystem {
     pub(super) fn prepare(&mut self, matrix: &SymmetricMatrix) -> Result<()> {
         match &mut self.kind {
             Kind::Direct { analysis, factor } => factor.factorise(analysis, matrix),
-            Kind::Iterative(gradients) => {
+            Kind::Iterative { gradients, .. } => {
                 // The last one's memory is free before the next one takes its own.
                 *gradients = None;
                 *gradients = Some(ConjugateGradients::new(matrix)?);
@@ -104,7 +125,7 @@ impl LinearSystem {
 
     /// Says that the matrix of the last [`Self::prepare`] has the pull of a proximal step.
     pub(super) fn expect_proximal_step(&mut self) {
-        if let Kind::Iterative(Some(gradients)) = &mut self.kind {
+        if let Kind::Iterative { gradients: Some(gradients), .. } = &mut self.kind {
             gradients.tighten(PROXIMAL_TOLERANCE);
         }
     }
@@ -114,16 +135,49 @@ impl LinearSystem {
     pub(super) fn is_singular(&mut self) -> bool {
         match &mut self.kind {
             Kind::Direct { factor, .. } => factor.is_singular(),
-            Kind::Iterative(gradients) => gradients.as_mut().is_some_and(|gradients| gradients.is_singular(false)),
+            Kind::Iterative { gradients, .. } => {
+                gradients.as_mut().is_some_and(|gradients| gradients.is_singular(false))
+            }
         }
     }
 
-    /// `right_hand_sides` becomes the solution. Conjugate gradients begin at `start`, which may be shorter.
-    pub(super) fn solve(&mut self, right_hand_sides: &mut [DVec3], start: &[DVec3], is_parallel: bool) {
+    /// The order and scale of the rows; they change with [`Self::prepare`].
+    pub(super) fn order(&self) -> Order<'_> {
+        match &self.kind {
+            Kind::Direct { factor, .. } => Order { place: factor.place(), scale: factor.scale() },
+            Kind::Iterative { place, scale, .. } => Order { place, scale },
+        }
+    }
+
+    /// Right-hand sides before, solutions after [`Self::solve`], both scaled.
+    pub(super) fn rows(&self) -> &[Lanes] {
+        match &self.kind {
+            Kind::Direct { factor, .. } => factor.rows(),
+            Kind::Iterative { rows, .. } => rows,
+        }
+    }
+
+    /// The rows, to be written.
+    pub(super) fn rows_mut(&mut self) -> &mut [Lanes] {
         match &mut self.kind {
-            Kind::Direct { factor, .. } => factor.solve(right_hand_sides, is_parallel),
-            Kind::Iterative(Some(gradients)) => gradients.solve(right_hand_sides, start, is_parallel),
-            Kind::Iterative(None) => {}
+            Kind::Direct { factor, .. } => factor.rows_mut(),
+            Kind::Iterative { rows, .. } => rows,
+        }
+    }
+
+    /// The row of one unknown, to be given its right-hand side.
+    pub(super) fn row_mut(&mut self, unknown: usize) -> (&mut Lanes, f64) {
+        let Order { place, scale } = self.order();
+        let (place, scale) = (place[unknown] as usize, scale[unknown]);
+        (&mut self.rows_mut()[place], scale)
+    }
+
+    /// Solves in the rows. Conjugate gradients begin at `start`, which may be shorter than the matrix.
+    pub(super) fn solve(&mut self, start: &[DVec3], is_parallel: bool) {
+        match &mut self.kind {
+            Kind::Direct { factor, .. } => factor.solve_rows(is_parallel),
+            Kind::Iterative { gradients: Some(gradients), rows, .. } => gradients.solve(rows, start, is_parallel),
+            Kind::Iterative { gradients: None, .. } => {}
         }
     }
 
@@ -131,7 +185,7 @@ impl LinearSystem {
     pub(super) fn used(&self) -> LinearSolver {
         match &self.kind {
             Kind::Direct { .. } => LinearSolver::Direct,
-            Kind::Iterative(_) => LinearSolver::ConjugateGradients,
+            Kind::Iterative { .. } => LinearSolver::ConjugateGradients,
         }
     }
 
@@ -152,7 +206,7 @@ impl LinearSystem {
 
     fn all_iterations(&self) -> u64 {
         match &self.kind {
-            Kind::Iterative(Some(gradients)) => gradients.iteration_count(),
+            Kind::Iterative { gradients: Some(gradients), .. } => gradients.iteration_count(),
             _ => 0,
         }
     }
@@ -175,6 +229,7 @@ impl LinearSolver {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::simd::{lanes, vector};
 
     #[test]
     fn automatic_takes_a_factor_up_to_the_bound_and_conjugate_gradients_beyond() {
@@ -194,9 +249,15 @@ mod tests {
             assert!(system.reason().contains(word), "{}", system.reason());
             system.prepare(&matrix).unwrap();
             assert!(!system.is_singular());
-            let mut x = vec![DVec3::ONE; 100];
-            system.solve(&mut x, &[DVec3::ZERO; 100], false);
-            assert!(x.iter().all(|x| (*x - DVec3::ONE).length() < 1e-14));
+            for unknown in 0..100 {
+                let (row, scale) = system.row_mut(unknown);
+                *row = lanes(scale * DVec3::ONE);
+            }
+            system.solve(&[DVec3::ZERO; 100], false);
+            for unknown in 0..100 {
+                let (row, scale) = system.row_mut(unknown);
+                assert!((scale * vector(*row) - DVec3::ONE).length() < 1e-14);
+            }
         }
     }
 }

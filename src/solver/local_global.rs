@@ -7,7 +7,6 @@ use glam::DVec3;
 
 use super::Workspace;
 use super::acceleration::Accelerator;
-use super::system::System;
 use super::{
     Dynamics, LinearSolver, Outcome, Progress, ProgressFn, Rejections, Report, STALL_ITERATIONS, SolveOptions, Solver,
 };
@@ -23,19 +22,7 @@ impl Solver {
     /// weights are so large that the result is not finite (`InvalidValue`). The points are then as before.
     pub fn solve(&mut self, iterations: u32) -> Result<()> {
         self.run(|solver| {
-            let mut clock = Clock::default();
-            if let Some(mut accelerator) = solver.begin_acceleration(Acceleration::None) {
-                let mut energy = solver.local_step(true, &mut clock);
-                for _ in 0..iterations {
-                    energy = solver.accelerated_step(&mut accelerator, energy, &mut clock).energy;
-                }
-                solver.accelerator = Some(accelerator);
-                return true;
-            }
-            for _ in 0..iterations {
-                solver.local_step(false, &mut clock);
-                solver.global_step(&mut clock);
-            }
+            solver.on_pool(|solver, is_parallel| solver.iterate_blindly(iterations, is_parallel));
             true
         })
     }
@@ -146,19 +133,39 @@ impl Solver {
         true
     }
 
+    /// So many iterations, whatever comes of them.
+    fn iterate_blindly(&mut self, iterations: u32, is_parallel: bool) {
+        let mut clock = Clock::default();
+        if let Some(mut accelerator) = self.begin_acceleration(Acceleration::None) {
+            let mut energy = self.local_step(true, is_parallel, &mut clock);
+            for _ in 0..iterations {
+                energy = self.accelerated_step(&mut accelerator, energy, is_parallel, &mut clock).energy;
+            }
+            self.accelerator = Some(accelerator);
+            return;
+        }
+        for _ in 0..iterations {
+            self.local_step(false, is_parallel, &mut clock);
+            self.solve_for_plain_step(is_parallel, &mut clock);
+            if let Some(system) = &mut self.system {
+                system.swap_solution(&mut self.points);
+            }
+        }
+    }
+
     fn iterate(&mut self, options: &SolveOptions, progress: &mut ProgressFn<'_>) -> Report {
         let started = Instant::now();
         let mut clock = Clock::default();
         let diagonal = bounding_box_diagonal(&self.points);
         let mut accelerator = self.begin_acceleration(Acceleration::QuasiNewton);
-        let energy = self.local_step(true, &mut clock);
+        let energy = self.on_pool(|solver, is_parallel| solver.local_step(true, is_parallel, &mut clock));
         let mut report = Report { energy_before: energy, energy_after: energy, ..Report::empty() };
         let (mut least_energy, mut least_move, mut stalled_for) = (energy, f64::INFINITY, 0);
         for iteration in 1..=options.max_iterations {
-            let step = match &mut accelerator {
-                Some(accelerator) => self.accelerated_step(accelerator, report.energy_after, &mut clock),
-                None => self.plain_step(&mut clock),
-            };
+            let step = self.on_pool(|solver, is_parallel| match &mut accelerator {
+                Some(accelerator) => solver.accelerated_step(accelerator, report.energy_after, is_parallel, &mut clock),
+                None => solver.plain_step(is_parallel, &mut clock),
+            });
             report.largest_move = step.largest_move / diagonal;
             report.energy_after = step.energy;
             report.iterations = iteration;
@@ -212,80 +219,70 @@ impl Solver {
         Some(accelerator)
     }
 
+    /// Runs `work` on the pool, where it is told that it may use more than one thread, if the system is large enough for that;
+    /// else here. Entering the pool costs some 10 µs.
+    fn on_pool<R: Send>(&mut self, work: impl FnOnce(&mut Self, bool) -> R + Send) -> R {
+        match self.pool_if_long() {
+            Some(pool) => pool.install(|| work(self, true)),
+            None => work(self, false),
+        }
+    }
+
     /// One iteration: the plain step. The local step at the current points was made.
-    fn plain_step(&mut self, clock: &mut Clock) -> Step {
-        let largest_move = self.global_step(clock);
-        Step { energy: self.local_step(true, clock), largest_move, evaluations: 1 }
+    fn plain_step(&mut self, is_parallel: bool, clock: &mut Clock) -> Step {
+        self.solve_for_plain_step(is_parallel, clock);
+        let largest_move = self.take_plain_step(is_parallel);
+        Step { energy: self.local_step(true, is_parallel, clock), largest_move, evaluations: 1 }
     }
 
     /// One iteration from points of `energy`, where the local step was made: to the first point that `accelerator` proposes
     /// and accepts, else the plain step.
-    fn accelerated_step(&mut self, accelerator: &mut Accelerator, energy: f64, clock: &mut Clock) -> Step {
-        self.solve_for_plain_step(clock);
+    fn accelerated_step(
+        &mut self,
+        accelerator: &mut Accelerator,
+        energy: f64,
+        is_parallel: bool,
+        clock: &mut Clock,
+    ) -> Step {
+        self.solve_for_plain_step(is_parallel, clock);
         let started = Instant::now();
-        let pool = self.pool_if(|_| accelerator.is_long());
         let has_direction = self.system.as_mut().is_some_and(|system| {
             let (plain, image) = system.solution_and_image(&self.points);
-            match pool {
-                Some(pool) => pool.install(|| accelerator.propose(&self.points, energy, plain, image, true)),
-                None => accelerator.propose(&self.points, energy, plain, image, false),
-            }
+            accelerator.propose(&self.points, energy, plain, image, is_parallel && accelerator.is_long())
         });
         clock.global_seconds += started.elapsed().as_secs_f64();
         let mut evaluations = 0;
         while has_direction && accelerator.place_trial(&mut self.points) {
-            let found = self.local_step(true, clock);
+            let found = self.local_step(true, is_parallel, clock);
             evaluations += 1;
             if accelerator.accepts(found) {
                 return Step { energy: found, largest_move: accelerator.largest_move(&self.points), evaluations };
             }
         }
-        let largest_move = self.take_plain_step();
-        Step { energy: self.local_step(true, clock), largest_move, evaluations: evaluations + 1 }
+        let largest_move = self.take_plain_step(is_parallel);
+        Step { energy: self.local_step(true, is_parallel, clock), largest_move, evaluations: evaluations + 1 }
     }
 
     /// Projects; returns the energy at the current points if it is wanted, else 0.
-    fn local_step(&mut self, wants_energy: bool, clock: &mut Clock) -> f64 {
+    fn local_step(&mut self, wants_energy: bool, is_parallel: bool, clock: &mut Clock) -> f64 {
         let started = Instant::now();
-        let pool = self.pool_if(System::is_local_step_long);
         let Some(system) = &mut self.system else { return 0.0 };
-        let (constraints, points) = (&self.constraints, &self.points);
-        let energy = match pool {
-            Some(pool) => pool.install(|| system.local_step(constraints, points, wants_energy, true)),
-            None => system.local_step(constraints, points, wants_energy, false),
-        };
+        let energy = system.local_step(&self.constraints, &self.points, wants_energy, is_parallel);
         clock.local_seconds += started.elapsed().as_secs_f64();
         if wants_energy { energy + self.external_energy() } else { 0.0 }
     }
 
-    /// Solves for new points and moves there; returns the largest move.
-    fn global_step(&mut self, clock: &mut Clock) -> f64 {
-        self.solve_for_plain_step(clock);
-        self.take_plain_step()
-    }
-
     /// Solves for new points, which the system keeps in hand.
-    fn solve_for_plain_step(&mut self, clock: &mut Clock) {
+    fn solve_for_plain_step(&mut self, is_parallel: bool, clock: &mut Clock) {
         let started = Instant::now();
-        let pool = self.pool_if(System::is_global_step_long);
         let Some(system) = &mut self.system else { return };
-        let (points, external) = (&self.points, &self.workspace.external);
-        match pool {
-            Some(pool) => pool.install(|| system.global_step(points, external, true)),
-            None => system.global_step(points, external, false),
-        }
+        system.global_step(&self.points, &self.workspace.external, is_parallel);
         clock.global_seconds += started.elapsed().as_secs_f64();
     }
 
     /// Moves to the points in hand; returns the largest move.
-    fn take_plain_step(&mut self) -> f64 {
-        let Some(system) = &self.system else { return 0.0 };
-        let mut largest_move = 0.0_f64;
-        for (point, new) in self.points.iter_mut().zip(system.solution()) {
-            largest_move = largest_move.max(point.distance_squared(*new));
-            *point = *new;
-        }
-        largest_move.sqrt()
+    fn take_plain_step(&mut self, is_parallel: bool) -> f64 {
+        self.system.as_mut().map_or(0.0, |system| system.take_solution(&mut self.points, is_parallel))
     }
 
     /// The part of the energy that is not the constraints'.
@@ -393,8 +390,8 @@ mod tests {
             }
             solver.solve(0).unwrap();
             let mut clock = Clock::default();
-            solver.local_step(true, &mut clock);
-            solver.solve_for_plain_step(&mut clock);
+            solver.local_step(true, false, &mut clock);
+            solver.solve_for_plain_step(false, &mut clock);
             let start = solver.points.clone();
             let (plain, image) = solver.system.as_mut().unwrap().solution_and_image(&start);
             let step: Vec<DVec3> = plain.iter().zip(&start).map(|(plain, x)| *plain - *x).collect();

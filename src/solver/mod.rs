@@ -437,9 +437,9 @@ impl Solver {
         }
     }
 
-    /// The pool, if more than one thread is allowed and the system is large enough in the sense of `is_long`.
-    fn pool_if(&mut self, is_long: impl Fn(&System) -> bool) -> Option<Arc<rayon::ThreadPool>> {
-        let is_long = self.thread_count != 1 && self.system.as_ref().is_some_and(is_long);
+    /// The pool, if more than one thread is allowed and the system is large enough to gain from it.
+    fn pool_if_long(&mut self) -> Option<Arc<rayon::ThreadPool>> {
+        let is_long = self.thread_count != 1 && self.system.as_ref().is_some_and(System::is_long);
         if is_long { self.pool() } else { None }
     }
 

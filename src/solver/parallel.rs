@@ -1,13 +1,13 @@
 //! Work on parts of a slice, on one thread or many, with the same bits either way: the parts depend on the problem alone.
 
 /// Calls `work(i, part, result)` for every part `data[bounds[i]..bounds[i + 1]]` and `results[i]`. `bounds` begins at 0 and
-/// ends at the length of `data`. Parts run in parallel on the current rayon pool if `is_parallel`. Allocates nothing.
-pub(super) fn for_parts<T: Send>(
+/// ends at the length of `data`. Parts that have no result may have `()`. They run in parallel on the current rayon pool if `is_parallel`. Allocates nothing.
+pub(super) fn for_parts<T: Send, R: Send>(
     bounds: &[usize],
     data: &mut [T],
-    results: &mut [f64],
+    results: &mut [R],
     is_parallel: bool,
-    work: &(impl Fn(usize, &mut [T], &mut f64) + Sync),
+    work: &(impl Fn(usize, &mut [T], &mut R) + Sync),
 ) {
     if is_parallel {
         split(0, bounds, data, results, work);
@@ -21,12 +21,12 @@ pub(super) fn for_parts<T: Send>(
     }
 }
 
-fn split<T: Send>(
+fn split<T: Send, R: Send>(
     first: usize,
     bounds: &[usize],
     data: &mut [T],
-    results: &mut [f64],
-    work: &(impl Fn(usize, &mut [T], &mut f64) + Sync),
+    results: &mut [R],
+    work: &(impl Fn(usize, &mut [T], &mut R) + Sync),
 ) {
     match results {
         [] => {}

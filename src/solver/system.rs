@@ -16,13 +16,14 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::assembly::{Gather, fill, long_constraint_count, new_pattern};
+use super::assembly::{Gather, chunk_bounds, fill, long_constraint_count, new_pattern};
 use super::free_components::{FreeComponent, free_components};
-use super::linear_solver::{LARGEST_FACTOR_BYTES, LinearSolver, LinearSystem};
+use super::linear_solver::{LARGEST_FACTOR_BYTES, LinearSolver, LinearSystem, Order};
 use super::parallel::for_parts;
 use crate::constraints::ConstraintSet;
 use crate::error::{Error, Result, Status};
 use crate::linalg::cholesky::SymmetricMatrix;
+use crate::linalg::simd::{Lanes, lanes, vector};
 
 /// Indices (and so targets, roughly) that one chunk of the local step covers: some 10 µs of work, so that splitting costs
 /// little, and some ten chunks per thread of the smallest problem that runs in parallel.
@@ -75,9 +76,11 @@ pub(super) struct System {
     chunk_energies: Vec<f64>,
     targets: Vec<DVec3>,
     gather: Gather,
-    /// One entry per chunk of points, of no meaning.
-    gather_results: Vec<f64>,
-    /// New points, then the unknown means.
+    /// Where the chunks of points begin, and the number of points.
+    point_bounds: Vec<usize>,
+    /// The largest squared move in each chunk of points.
+    chunk_moves: Vec<f64>,
+    /// New points.
     solution: Vec<DVec3>,
     unconstrained: Vec<u32>,
     free_components: Vec<FreeComponent>,
@@ -130,7 +133,7 @@ impl System {
 
         let unconstrained: Vec<u32> =
             (0..point_count).filter(|&i| matrix.diagonal(i) == 0.0).map(|i| i as u32).collect();
-        let gather = Gather::new(constraints, &stiffness, point_count);
+        let point_bounds = chunk_bounds(point_count);
         let mut system = Self {
             point_count,
             matrix,
@@ -139,9 +142,10 @@ impl System {
             chunk_bounds: vec![0],
             chunk_energies: Vec::new(),
             targets: Vec::new(),
-            gather_results: vec![0.0; gather.bounds.len() - 1],
-            gather,
-            solution: vec![DVec3::ZERO; unknown_count],
+            gather: Gather::default(),
+            chunk_moves: vec![0.0; point_bounds.len() - 1],
+            point_bounds,
+            solution: vec![DVec3::ZERO; point_count],
             unconstrained,
             free_components: Vec::new(),
             proximal: Vec::new(),
@@ -155,20 +159,25 @@ impl System {
         let started = Instant::now();
         system.make_definite(constraints, inertia, counts)?;
         system.factorisation_seconds = started.elapsed().as_secs_f64();
+        system.gather = Gather::new(constraints, &system.stiffness, system.linear.order());
         Ok(system)
     }
 
-    /// True if a local step is long enough to gain from more than one thread.
-    pub(super) fn is_local_step_long(&self) -> bool {
+    /// True if some part of an iteration is long enough to gain from more than one thread.
+    pub(super) fn is_long(&self) -> bool {
+        self.is_local_step_long() || self.is_global_step_long()
+    }
+
+    fn is_local_step_long(&self) -> bool {
         self.targets.len() >= PARALLEL_TARGETS
     }
 
-    /// True if gathering right-hand sides is long enough to gain from more than one thread.
-    pub(super) fn is_global_step_long(&self) -> bool {
-        self.gather.targets.len() >= PARALLEL_ENTRIES
+    fn is_global_step_long(&self) -> bool {
+        self.gather.len() >= PARALLEL_ENTRIES
     }
 
-    /// Projects `points` onto every constraint, on the current rayon pool if `is_parallel`. Returns `½ Σ s ‖A x − p‖²` if
+    /// Projects `points` onto every constraint, on the current rayon pool if `is_parallel` and it is long
+    /// enough. Returns `½ Σ s ‖A x − p‖²` if
     /// `wants_energy`, else 0.
     pub(super) fn local_step(
         &mut self,
@@ -177,6 +186,7 @@ impl System {
         wants_energy: bool,
         is_parallel: bool,
     ) -> f64 {
+        let is_parallel = is_parallel && self.is_local_step_long();
         let (chunks, stiffness) = (&self.chunks, &self.stiffness);
         let work = |i: usize, targets: &mut [DVec3], energy: &mut f64| {
             let Chunk { batch: index, first_slot, end_slot } = chunks[i];
@@ -192,31 +202,37 @@ impl System {
     }
 
     /// Solves for new points from the last projections, the `external` terms of the right-hand side (empty: none) and
-    /// the current `points`, which the remedies for singular systems refer to; [`Self::solution`] then has them.
+    /// the current `points`, which the remedies for singular systems refer to; [`Self::swap_solution`] then has them.
     pub(super) fn global_step(&mut self, points: &[DVec3], external: &[DVec3], is_parallel: bool) {
-        let n = self.point_count;
-        let (gather, targets, proximal) = (&self.gather, &self.targets, &self.proximal);
-        let work = |chunk: usize, sums: &mut [DVec3], _: &mut f64| {
-            for (point, sum) in (gather.bounds[chunk]..).zip(sums) {
-                *sum = external.get(point).copied().unwrap_or_default();
-                let entries = gather.starts[point]..gather.starts[point + 1];
-                for (&target, &coefficient) in gather.targets[entries.clone()].iter().zip(&gather.coefficients[entries])
-                {
-                    *sum += coefficient * targets[target as usize];
-                }
-                if let Some(pull) = proximal.get(point) {
-                    *sum += *pull * points[point];
-                }
-            }
+        let is_parallel = is_parallel && self.is_global_step_long();
+        let (gather, targets, pulls) = (&self.gather, &self.targets, &self.proximal);
+        let work = |chunk: usize, rows: &mut [Lanes], (): &mut ()| {
+            gather.write_rows(gather.bounds[chunk], rows, targets, external, pulls, points);
         };
-        for_parts(&gather.bounds, &mut self.solution[..n], &mut self.gather_results, is_parallel, &work);
-        self.solution[n..].fill(DVec3::ZERO);
-        self.solve_in_place(points, is_parallel);
+        // Nothing is allocated for results of no size.
+        let mut no_results = vec![(); gather.bounds.len() - 1];
+        for_parts(&gather.bounds, self.linear.rows_mut(), &mut no_results, is_parallel, &work);
+        self.solve(points, is_parallel);
     }
 
-    /// The new points of the last global step.
-    pub(super) fn solution(&self) -> &[DVec3] {
-        &self.solution[..self.point_count]
+    /// Exchanges `points` with the new ones of the last global step.
+    pub(super) fn swap_solution(&mut self, points: &mut Vec<DVec3>) {
+        std::mem::swap(points, &mut self.solution);
+    }
+
+    /// Moves `points` to the new ones of the last global step; returns the largest move.
+    pub(super) fn take_solution(&mut self, points: &mut [DVec3], is_parallel: bool) -> f64 {
+        let is_parallel = is_parallel && self.is_global_step_long();
+        let (bounds, solution) = (&self.point_bounds, &self.solution);
+        let work = |chunk: usize, points: &mut [DVec3], largest: &mut f64| {
+            *largest = 0.0;
+            for (point, new) in points.iter_mut().zip(&solution[bounds[chunk]..]) {
+                *largest = largest.max(point.distance_squared(*new));
+                *point = *new;
+            }
+        };
+        for_parts(bounds, points, &mut self.chunk_moves, is_parallel, &work);
+        self.chunk_moves.iter().copied().fold(0.0, f64::max).sqrt()
     }
 
     /// The new points of the last global step from `points`, and `N` times the change to them: minus the gradient of the
@@ -239,7 +255,7 @@ impl System {
             let held = component.points[0] as usize;
             self.image[held] -= component.held_stiffness * self.change[held];
         }
-        (&self.solution[..n], &self.image[..n])
+        (&self.solution, &self.image[..n])
     }
 
     /// `½ Σ s ‖A x − P(x)‖²` at any points, without touching the iteration's memory.
@@ -284,9 +300,12 @@ impl System {
         let rest = vec![DVec3::ZERO; n];
         let mut left = forces.to_vec();
         for _ in 0..RESISTANCE_STEPS {
-            self.solution[..n].copy_from_slice(&left);
-            self.solution[n..].fill(DVec3::ZERO);
-            self.solve_in_place(&rest, false);
+            self.linear.rows_mut().fill([0.0; 4]);
+            for (point, left) in left.iter().enumerate() {
+                let (row, scale) = self.linear.row_mut(point);
+                *row = lanes(scale * *left);
+            }
+            self.solve(&rest, false);
             for ((left, x), pull) in left.iter_mut().zip(&self.solution).zip(&self.proximal) {
                 *left = *x * *pull;
             }
@@ -298,18 +317,28 @@ impl System {
         }
     }
 
-    /// Solves with the right-hand sides in `solution` and undoes what holding the free components changed.
-    fn solve_in_place(&mut self, points: &[DVec3], is_parallel: bool) {
+    /// Solves with the right-hand sides in the rows, reads the solution and undoes what holding the free components changed.
+    fn solve(&mut self, points: &[DVec3], is_parallel: bool) {
         for component in self.free_components.iter().filter(|component| component.held_stiffness > 0.0) {
             let held = component.points[0] as usize;
-            self.solution[held] += component.held_stiffness * points[held];
+            let (row, scale) = self.linear.row_mut(held);
+            *row = lanes(vector(*row) + scale * component.held_stiffness * points[held]);
         }
         for &point in &self.unconstrained {
-            self.solution[point as usize] = points[point as usize];
+            let (row, scale) = self.linear.row_mut(point as usize);
+            *row = lanes(scale * points[point as usize]);
         }
-        self.linear.solve(&mut self.solution, points, is_parallel);
+        self.linear.solve(points, is_parallel);
+        let (Order { place, scale }, rows, bounds) = (self.linear.order(), self.linear.rows(), &self.point_bounds);
+        let work = |chunk: usize, solution: &mut [DVec3], (): &mut ()| {
+            let first = bounds[chunk];
+            for ((new, &place), scale) in solution.iter_mut().zip(&place[first..]).zip(&scale[first..]) {
+                *new = *scale * vector(rows[place as usize]);
+            }
+        };
+        for_parts(bounds, &mut self.solution, &mut vec![(); bounds.len() - 1], is_parallel, &work);
         for &point in &self.unconstrained {
-            // Conjugate gradients may round.
+            // The scale, or conjugate gradients, may round.
             self.solution[point as usize] = points[point as usize];
         }
         for component in self.free_components.iter().filter(|component| component.held_stiffness > 0.0) {
