@@ -1,21 +1,12 @@
 //! The floor of an iteration: the bytes that it must stream at least, and the rate at which this machine reads.
 
 use std::hint::black_box;
-use std::mem::{size_of, size_of_val};
 use std::sync::Barrier;
 use std::time::Instant;
 
 use serde_json::{Value, json};
-use shapeop::constraints::{self, ConstraintView, Rows};
-use shapeop::linalg::cholesky::{Analysis, SymmetricMatrix};
 use shapeop::linalg::simd::{Kernel, Lanes, dispatch};
 use shapeop::solver::Solver;
-
-/// Bytes of a point, of a target and of a row of right-hand sides: three doubles.
-const ROW: usize = 3 * size_of::<f64>();
-
-/// Centred constraints of more points than this have one more unknown instead of a dense block, as in the solver.
-const LONGEST_DENSE_STENCIL: usize = 12;
 
 /// Bytes that one round of reading takes at least, so that starting it does not count.
 const BYTES_PER_ROUND: usize = 128 << 20;
@@ -23,68 +14,16 @@ const BYTES_PER_ROUND: usize = 128 << 20;
 /// Rounds of reading; their median counts.
 const ROUNDS: usize = 9;
 
-/// What an iteration of `solver` streams, in bytes: every array once, and the factor twice. Only the factor's values are
-/// counted, and those are an estimate: the analysis of the same matrix, made again here, says how many there are.
-pub fn bytes(solver: &Solver) -> Result<Value, shapeop::error::Error> {
-    let point_count = solver.points().len();
-    let views: Vec<ConstraintView<'_>> =
-        (0..solver.constraint_count()).filter_map(|id| solver.constraint(id)).collect();
-    let long_count = views.iter().filter(|view| is_long(view)).count();
-    let unknown_count = point_count + long_count;
-    let matrix = SymmetricMatrix::with_pattern(unknown_count, |report| {
-        let mut mean = point_count as u32;
-        for view in &views {
-            if is_long(view) {
-                view.indices.iter().for_each(|&i| report(mean, i));
-                mean += 1;
-                continue;
-            }
-            for (a, &i) in view.indices.iter().enumerate() {
-                view.indices[..a].iter().for_each(|&j| report(i, j));
-            }
-        }
-    })?;
-    let factor_values = Analysis::new(&matrix, solver.points())?.factor_value_count();
-    let (mut targets, mut constraint_bytes) = (0, 0);
-    for view in &views {
-        let k = view.indices.len();
-        let (rows, coefficients) = match view.info.rows {
-            Rows::Centred => (k, 0),
-            Rows::Linear(rows) => (rows, rows * k),
-        };
-        targets += rows;
-        let doubles = 1 + view.scalars.len() + coefficients;
-        constraint_bytes += size_of_val(view.indices) + size_of::<f64>() * doubles + rest_bytes(view.info.name);
-    }
-    Ok(json!({
-        "factor": size_of::<f64>() * factor_values,
-        "factor_is_estimate": true,
-        "right_hand_sides": ROW * unknown_count,
-        "points": ROW * point_count,
-        "projections": ROW * targets,
-        "constraint_data": constraint_bytes,
+/// What an iteration of `solver` streams, in bytes; the factor counts twice.
+pub fn bytes(solver: &Solver) -> Option<Value> {
+    let bytes = solver.iteration_bytes()?;
+    Some(json!({
+        "factor": bytes.factor,
+        "right_hand_sides": bytes.right_hand_sides,
+        "points": bytes.points,
+        "projections": bytes.projections,
+        "constraint_data": bytes.constraints,
     }))
-}
-
-fn is_long(view: &ConstraintView<'_>) -> bool {
-    view.info.rows == Rows::Centred && view.indices.len() > LONGEST_DENSE_STENCIL
-}
-
-/// Bytes of the rest state of one constraint, of the types that the problems use.
-fn rest_bytes(type_name: &str) -> usize {
-    match type_name {
-        "Angle" => size_of::<constraints::angle::Angle>(),
-        "Bending" => size_of::<constraints::bending::Bending>(),
-        "Circle" => size_of::<constraints::circle::Circle>(),
-        "Closeness" => size_of::<constraints::closeness::Closeness>(),
-        "EdgeStrain" => size_of::<constraints::edge_strain::EdgeStrain>(),
-        "LaplacianDisplacement" => size_of::<constraints::laplacian_displacement::LaplacianDisplacement>(),
-        "Plane" => size_of::<constraints::plane::Plane>(),
-        "Similarity" => size_of::<constraints::similarity::Similarity>(),
-        "TetrahedronStrain" => size_of::<constraints::tetrahedron_strain::TetrahedronStrain>(),
-        "Volume" => size_of::<constraints::volume::Volume>(),
-        _ => 0,
-    }
 }
 
 /// The sum of all values, with sums enough to wait for memory and not for additions.

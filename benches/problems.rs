@@ -29,7 +29,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             model_file::write(&model, file)?;
             json!({"vertices": model.points.len()})
         }
-        ["bytes", name, vertex_count] => floor::bytes(&model(name, vertex_count)?.solver()?)?,
+        ["bytes", name, vertex_count] => {
+            let model = model(name, vertex_count)?;
+            let mut solver = model.solver()?;
+            model.init(&mut solver)?;
+            floor::bytes(&solver).ok_or("there is no factor")?
+        }
         ["bandwidth", bytes, threads] => {
             let threads = threads.parse()?;
             json!({"threads": threads, "bytes_per_second": floor::bandwidth(bytes.parse()?, threads)})

@@ -58,6 +58,9 @@ pub(crate) trait Batch: Send + Sync {
     /// True if the rest state of a slot is degenerate.
     fn is_degenerate(&self, slot: usize) -> bool;
 
+    /// Bytes of what projecting all constraints reads besides the points: indices, scalars and rest states.
+    fn byte_count(&self) -> usize;
+
     /// A copy of the whole batch.
     fn clone_box(&self) -> Box<dyn Batch>;
 }
@@ -309,6 +312,11 @@ impl<T: Constraint> Batch for TypedBatch<T> {
 
     fn is_degenerate(&self, slot: usize) -> bool {
         self.rest[slot].is_degenerate(self.scalars.get(slot))
+    }
+
+    fn byte_count(&self) -> usize {
+        let lists = size_of_val(&*self.indices.values) + size_of_val(&*self.scalars.values);
+        lists + size_of_val(&*self.rest)
     }
 
     fn clone_box(&self) -> Box<dyn Batch> {

@@ -341,6 +341,11 @@ impl Factor {
         self.is_singular
     }
 
+    /// Bytes of the factor as it is stored.
+    pub fn byte_count(&self) -> usize {
+        self.panels.byte_count()
+    }
+
     /// Where each unknown of the matrix lies in [`Self::rows_mut`].
     pub fn place(&self) -> &[u32] {
         &self.place

@@ -118,6 +118,13 @@ impl Panels {
         Self { position, parts, x: vec![[0.0; 4]; dimension], buffers }
     }
 
+    /// Bytes of the factor as it is stored: values, row indices, and where they lie.
+    pub fn byte_count(&self) -> usize {
+        let of_part =
+            |part: &Part| size_of_val(&*part.values) + size_of_val(&*part.rows) + size_of_val(&*part.supernodes);
+        self.parts.iter().map(of_part).sum()
+    }
+
     /// Where unknown `i` of the elimination order lies in [`Self::unknowns_mut`].
     pub fn position(&self) -> &[u32] {
         &self.position

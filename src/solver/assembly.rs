@@ -64,6 +64,11 @@ impl Gather {
         self.targets.len()
     }
 
+    /// Bytes of all entries and of where the rows begin.
+    pub(super) fn byte_count(&self) -> usize {
+        size_of_val(&*self.starts) + size_of_val(&*self.targets) + size_of_val(&*self.coefficients)
+    }
+
     /// Writes the rows from `first` on: the sums of `targets`, plus the terms of their points. `external` and `pulls` have
     /// one entry per point, or none at all; a pull is towards where its point is now.
     pub(super) fn write_rows(

@@ -189,6 +189,14 @@ impl LinearSystem {
         }
     }
 
+    /// Bytes of the factor as it is stored; `None` without one.
+    pub(super) fn factor_byte_count(&self) -> Option<usize> {
+        match &self.kind {
+            Kind::Direct { factor, .. } => Some(factor.byte_count()),
+            Kind::Iterative { .. } => None,
+        }
+    }
+
     /// Why that one, in words.
     pub(super) fn reason(&self) -> &str {
         &self.reason

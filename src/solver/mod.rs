@@ -18,7 +18,7 @@ mod report;
 mod system;
 
 pub use linear_solver::LinearSolver;
-pub use report::{Outcome, Progress, Rejections, Report, SolveOptions};
+pub use report::{IterationBytes, Outcome, Progress, Rejections, Report, SolveOptions};
 
 use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
@@ -347,6 +347,12 @@ impl Solver {
             self.linear_solver = linear_solver;
             self.invalidate();
         }
+    }
+
+    /// What a plain iteration goes through; `None` before initialisation, after an edit that the next solve has yet to take up, and
+    /// with conjugate gradients.
+    pub fn iteration_bytes(&self) -> Option<IterationBytes> {
+        self.system.as_ref()?.iteration_bytes(&self.constraints)
     }
 
     /// The violation of every constraint id at the current points, each in its type's unit; 0 for removed ones.

@@ -25,6 +25,21 @@ impl Default for SolveOptions {
     }
 }
 
+/// Bytes of what a plain iteration goes through at least: the factor twice, the rest once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IterationBytes {
+    /// The factor as it is stored: values, row indices, and where they lie.
+    pub factor: usize,
+    /// The right-hand sides of the linear system.
+    pub right_hand_sides: usize,
+    /// The points.
+    pub points: usize,
+    /// The projections.
+    pub projections: usize,
+    /// Indices, scalars and rest states of the constraints, and the entries of `Aᵀ`.
+    pub constraints: usize,
+}
+
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]

@@ -20,6 +20,7 @@ use super::assembly::{Gather, chunk_bounds, fill, long_constraint_count, new_pat
 use super::free_components::{FreeComponent, free_components};
 use super::linear_solver::{LARGEST_FACTOR_BYTES, LinearSolver, LinearSystem, Order};
 use super::parallel::for_parts;
+use super::report::IterationBytes;
 use crate::constraints::ConstraintSet;
 use crate::error::{Error, Result, Status};
 use crate::linalg::cholesky::SymmetricMatrix;
@@ -161,6 +162,18 @@ impl System {
         system.factorisation_seconds = started.elapsed().as_secs_f64();
         system.gather = Gather::new(constraints, &system.stiffness, system.linear.order());
         Ok(system)
+    }
+
+    /// What an iteration goes through; `None` without a factor.
+    pub(super) fn iteration_bytes(&self, constraints: &ConstraintSet) -> Option<IterationBytes> {
+        Some(IterationBytes {
+            factor: self.linear.factor_byte_count()?,
+            right_hand_sides: size_of_val(self.linear.rows()),
+            points: size_of_val(&*self.solution),
+            projections: size_of_val(&*self.targets),
+            constraints: constraints.batches().map(|(batch, _)| batch.byte_count()).sum::<usize>()
+                + self.gather.byte_count(),
+        })
     }
 
     /// True if some part of an iteration is long enough to gain from more than one thread.
