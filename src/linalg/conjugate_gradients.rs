@@ -50,7 +50,10 @@ pub struct ConjugateGradients {
     image: Vec<Lanes>,
     sums: Vec<Sums>,
     tolerance: f64,
+    /// [`MAX_ITERATIONS`] but in tests.
+    iteration_limit: u32,
     iteration_count: u64,
+    cut_short_count: u64,
 }
 
 impl std::fmt::Debug for ConjugateGradients {
@@ -94,7 +97,9 @@ impl ConjugateGradients {
             image,
             sums,
             tolerance: TOLERANCE,
+            iteration_limit: MAX_ITERATIONS,
             iteration_count: 0,
+            cut_short_count: 0,
         })
     }
 
@@ -132,9 +137,11 @@ impl ConjugateGradients {
         let mut is_finite = b.iter().flatten().all(|value| value.is_finite());
         if is_finite && unit > 0.0 {
             b.iter_mut().flatten().for_each(|value| *value /= unit);
-            let iterations = self.iterate(extent, unit, is_parallel);
-            is_finite = iterations.is_some();
-            self.iteration_count += u64::from(iterations.unwrap_or(0));
+            let outcome = self.iterate(extent, unit, is_parallel);
+            is_finite = outcome.is_some();
+            let (iterations, is_cut_short) = outcome.unwrap_or_default();
+            self.iteration_count += u64::from(iterations);
+            self.cut_short_count += u64::from(is_cut_short);
         }
         for ((solution, x), scale) in right_hand_sides.iter_mut().zip(&self.x).zip(&self.scale) {
             // Whoever asked looks at what is not finite, and refuses it.
@@ -173,9 +180,14 @@ impl ConjugateGradients {
         self.iteration_count
     }
 
+    /// Solves so far that used up their iterations short of the tolerance.
+    pub fn cut_short_count(&self) -> u64 {
+        self.cut_short_count
+    }
+
     /// From a start in `x` and its residual in the preconditioner's right-hand side, which counts in `unit`, to the solution
-    /// in `x`. Returns the number of iterations, `None` if numbers overflowed.
-    fn iterate(&mut self, extent: f64, unit: f64, is_parallel: bool) -> Option<u32> {
+    /// in `x`. Returns the number of iterations and whether they were too few, `None` if numbers overflowed.
+    fn iterate(&mut self, extent: f64, unit: f64, is_parallel: bool) -> Option<(u32, bool)> {
         self.preconditioner.run(is_parallel);
         let mut now = self.preconditioned(is_parallel)?;
         let first = now.greatest.iter().copied().fold(0.0, f64::max);
@@ -185,7 +197,7 @@ impl ConjugateGradients {
             std::array::from_fn(|lane| lane < 3 && now.greatest[lane] > tolerance && now.product[lane] > 0.0);
         let mut keep = [0.0; 4];
         let mut iteration = 0;
-        while iteration < MAX_ITERATIONS && is_active.contains(&true) {
+        while iteration < self.iteration_limit && is_active.contains(&true) {
             iteration += 1;
             let (matrix, _, preconditioned) = self.preconditioner.parts();
             follow(&mut self.direction, keep, preconditioned, is_parallel);
@@ -207,7 +219,7 @@ impl ConjugateGradients {
             }
             now = next;
         }
-        Some(iteration)
+        Some((iteration, is_active.contains(&true)))
     }
 
     /// The product of the residual with the preconditioned residual, and the greatest entry of the latter as a change of
@@ -385,6 +397,27 @@ mod tests {
         let mut again = rhs.clone();
         solve(&mut gradients, &mut again, &solution, false);
         assert_eq!(again, found, "an overflow left its traces");
+    }
+
+    #[test]
+    fn a_solve_that_is_cut_short_is_counted_and_leaves_less_energy() {
+        let matrix = block(10, 10.0, 0.1);
+        let (rhs, start) = (vectors(1000, 0), vectors(1000, 3));
+        let energy = |x: &[DVec3]| {
+            let mut image = vec![DVec3::ZERO; 1000];
+            matrix.multiply(x, &mut image);
+            x.iter().zip(&image).zip(&rhs).map(|((x, image), b)| x.dot(0.5 * *image - *b)).sum::<f64>()
+        };
+        let mut gradients = ConjugateGradients::new(&matrix).unwrap();
+        let mut before = energy(&start);
+        for limit in [1, 3, MAX_ITERATIONS] {
+            gradients.iteration_limit = limit;
+            let mut x = rhs.clone();
+            solve(&mut gradients, &mut x, &start, false);
+            assert!(energy(&x) < before, "no lower after {limit} iterations");
+            before = energy(&x);
+        }
+        assert_eq!(gradients.cut_short_count(), 2);
     }
 
     #[test]

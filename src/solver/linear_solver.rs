@@ -43,7 +43,8 @@ pub(super) struct LinearSystem {
     kind: Kind,
     /// Why it is the one that it is.
     reason: String,
-    iterations_before: u64,
+    /// Iterations, and solves cut short, before those that count.
+    counts_before: [u64; 2],
 }
 
 enum Kind {
@@ -78,7 +79,7 @@ impl LinearSystem {
         wish: LinearSolver,
         largest_bytes: u64,
     ) -> Result<Self> {
-        let made = |kind, reason| Ok(Self { wish, kind, reason, iterations_before: 0 });
+        let made = |kind, reason| Ok(Self { wish, kind, reason, counts_before: [0; 2] });
         let iterative = || {
             let n = matrix.dimension();
             let (rows, place, scale) = (vec![[0.0; 4]; n], (0..n as u32).collect(), vec![1.0; n]);
@@ -117,7 +118,7 @@ impl LinearSystem {
                 // The last one's memory is free before the next one takes its own.
                 *gradients = None;
                 *gradients = Some(ConjugateGradients::new(matrix)?);
-                self.iterations_before = 0;
+                self.counts_before = [0; 2];
                 Ok(())
             }
         }
@@ -197,25 +198,31 @@ impl LinearSystem {
         }
     }
 
-    /// Why that one, in words.
-    pub(super) fn reason(&self) -> &str {
-        &self.reason
+    /// Why that one, in words, and how many solves since [`Self::restart_count`] were cut short.
+    pub(super) fn reason(&self) -> String {
+        match self.counts_of_all()[1] - self.counts_before[1] {
+            0 => self.reason.clone(),
+            1 => format!("{}; a solve used up its iterations short of the tolerance", self.reason),
+            count => format!("{}; {count} solves used up their iterations short of the tolerance", self.reason),
+        }
     }
 
     /// Iterations of conjugate gradients since [`Self::restart_count`]; 0 with a factor.
     pub(super) fn iteration_count(&self) -> u64 {
-        self.all_iterations().saturating_sub(self.iterations_before)
+        self.counts_of_all()[0] - self.counts_before[0]
     }
 
-    /// Counts iterations from 0 again.
+    /// Counts iterations and solves that were cut short from 0 again.
     pub(super) fn restart_count(&mut self) {
-        self.iterations_before = self.all_iterations();
+        self.counts_before = self.counts_of_all();
     }
 
-    fn all_iterations(&self) -> u64 {
+    fn counts_of_all(&self) -> [u64; 2] {
         match &self.kind {
-            Kind::Iterative { gradients: Some(gradients), .. } => gradients.iteration_count(),
-            _ => 0,
+            Kind::Iterative { gradients: Some(gradients), .. } => {
+                [gradients.iteration_count(), gradients.cut_short_count()]
+            }
+            _ => [0; 2],
         }
     }
 }

@@ -63,7 +63,7 @@ impl Solver {
             report.analysis_seconds = system.analysis_seconds;
             report.factorisation_seconds = system.factorisation_seconds;
             report.linear_solver = system.linear.used();
-            report.linear_solver_reason = system.linear.reason().to_owned();
+            report.linear_solver_reason = system.linear.reason();
             report.linear_iterations = u32::try_from(system.linear.iteration_count()).unwrap_or(u32::MAX);
         }
         (report.ordering_count, report.factorisation_count) = (self.counts.orderings, self.counts.factorisations);
