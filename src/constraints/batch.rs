@@ -5,8 +5,8 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::{Constraint, Rows, Scalars, Stencil, TypeInfo};
-use crate::linalg::lanes::{F4, V4};
-use crate::linalg::simd::{Kernel, dispatch};
+use crate::linalg::lanes::{F4, Mask, V4};
+use crate::linalg::simd::{Isa, LaneKernel, dispatch_lanes};
 
 /// All constraints of one type. A *slot* is a constraint's place in the batch; removing constraints moves the later ones
 /// down, so slots change where ids do not.
@@ -268,7 +268,7 @@ impl<T: Constraint> Batch for TypedBatch<T> {
     }
 
     fn project(&self, slots: Range<usize>, points: &[DVec3], targets: &mut [DVec3]) {
-        dispatch(Project { batch: self, slots, points, targets });
+        dispatch_lanes(Project { batch: self, slots, points, targets });
     }
 
     fn squared_residual(&self, slots: Range<usize>, points: &[DVec3], targets: &[DVec3], stiffness: &[f64]) -> f64 {
@@ -318,27 +318,35 @@ impl<T: Constraint> Batch for TypedBatch<T> {
 
 /// What [`Constraint::project_four`] sees of four constraints besides their points.
 #[derive(Clone, Copy, Debug)]
-pub struct Four<'a, T> {
+pub struct Four<'a, T, S> {
+    /// The instruction set.
+    pub simd: S,
     constraints: [&'a T; 4],
     scalars: [&'a [f64]; 4],
 }
 
-impl<'a, T> Four<'a, T> {
+impl<'a, T, S: Isa> Four<'a, T, S> {
     /// Four rest states with the scalars in force of each.
-    pub fn new(constraints: [&'a T; 4], scalars: [&'a [f64]; 4]) -> Self {
-        Self { constraints, scalars }
+    pub fn new(simd: S, constraints: [&'a T; 4], scalars: [&'a [f64]; 4]) -> Self {
+        Self { simd, constraints, scalars }
+    }
+
+    /// The same number for all.
+    #[inline(always)]
+    pub fn splat(&self, value: f64) -> F4<S> {
+        F4::splat(self.simd, value)
     }
 
     /// Scalar `i` of each.
     #[inline(always)]
-    pub fn scalar(&self, i: usize) -> F4 {
-        F4(self.scalars.map(|scalars| scalars[i]))
+    pub fn scalar(&self, i: usize) -> F4<S> {
+        F4::new(self.simd, self.scalars.map(|scalars| scalars[i]))
     }
 
     /// A number of each rest state.
     #[inline(always)]
-    pub fn rest(&self, number: impl Fn(&T) -> f64) -> F4 {
-        F4(self.constraints.map(number))
+    pub fn rest(&self, number: impl Fn(&T) -> f64) -> F4<S> {
+        F4::new(self.simd, self.constraints.map(number))
     }
 }
 
@@ -350,11 +358,11 @@ struct Project<'a, T> {
     targets: &'a mut [DVec3],
 }
 
-impl<T: Constraint> Kernel for Project<'_, T> {
+impl<T: Constraint> LaneKernel for Project<'_, T> {
     type Output = ();
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) {
+    fn run<S: Isa>(self, simd: S) {
         let Self { batch, slots, points, targets } = self;
         let first = batch.target_offset(slots.start);
         let mut slot = slots.start;
@@ -362,13 +370,13 @@ impl<T: Constraint> Kernel for Project<'_, T> {
             let k = batch.indices.get(slot).len();
             let is_four = slot + 4 <= slots.end && T::takes_four(k) && batch.indices.are_four_of(k, slot);
             let count = if is_four { 4 } else { 1 };
-            let mut is_left = [true; 4];
+            let mut is_done = [false; 4];
             if is_four {
                 let four = &mut targets[batch.target_offset(slot) - first..batch.target_offset(slot + 4) - first];
-                is_left = batch.project_four::<FMA>(slot, k, points, four);
+                is_done = batch.project_four(simd, slot, k, points, four).to_array();
             }
-            if is_left != [false; 4] {
-                for i in (slot..slot + count).filter(|i| is_left[i - slot]) {
+            if is_done != [true; 4] {
+                for i in (slot..slot + count).filter(|i| !is_done[i - slot]) {
                     let (start, end) = (batch.target_offset(i) - first, batch.target_offset(i + 1) - first);
                     batch.rest[i].project(batch.scalars.get(i), batch.stencil(i, points), &mut targets[start..end]);
                 }
@@ -388,21 +396,15 @@ const fn has_points<T: Constraint>(k: usize) -> bool {
 }
 
 impl<T: Constraint> TypedBatch<T> {
-    /// Projects the constraints of four slots, of `k` points each; returns which of them are still to do.
+    /// Projects the constraints of four slots, of `k` points each; returns which of them are done.
     #[inline(always)]
-    fn project_four<const FMA: bool>(
-        &self,
-        slot: usize,
-        k: usize,
-        points: &[DVec3],
-        targets: &mut [DVec3],
-    ) -> [bool; 4] {
+    fn project_four<S: Isa>(&self, simd: S, slot: usize, k: usize, points: &[DVec3], targets: &mut [DVec3]) -> Mask<S> {
         // With the number of points as a constant, they stay in registers.
         macro_rules! by_point_count {
             ($($k:literal),*) => {
                 match k {
-                    $($k if const { has_points::<T>($k) } => self.project_four_of::<$k, FMA>(slot, points, targets),)*
-                    _ => [true; 4],
+                    $($k if const { has_points::<T>($k) } => self.project_four_of::<$k, S>(simd, slot, points, targets),)*
+                    _ => Mask::none(simd),
                 }
             };
         }
@@ -410,15 +412,17 @@ impl<T: Constraint> TypedBatch<T> {
     }
 
     #[inline(always)]
-    fn project_four_of<const K: usize, const FMA: bool>(
+    fn project_four_of<const K: usize, S: Isa>(
         &self,
+        simd: S,
         slot: usize,
         points: &[DVec3],
         targets: &mut [DVec3],
-    ) -> [bool; 4] {
+    ) -> Mask<S> {
         let slots = [slot, slot + 1, slot + 2, slot + 3];
         let indices = slots.map(|slot| &self.indices.get(slot)[..K]);
-        let mut x: [V4; K] = std::array::from_fn(|j| V4::gather(indices.map(|indices| points[indices[j] as usize])));
+        let mut x: [V4<S>; K] =
+            std::array::from_fn(|j| V4::gather(simd, indices.map(|indices| points[indices[j] as usize])));
         let rows = match T::INFO.rows {
             Rows::Centred => K,
             Rows::Linear(rows) => rows,
@@ -426,25 +430,25 @@ impl<T: Constraint> TypedBatch<T> {
         if T::INFO.rows == Rows::Centred {
             // Summed relative to the first point: far from the origin the mean keeps the digits that differences have.
             let first = x[0];
-            let sum = x[1..].iter().fold(V4::ZERO, |sum, &x| sum + (x - first));
-            let mean = first + sum * F4::splat(1.0 / K as f64);
+            let sum = x[1..].iter().fold(V4::zero(simd), |sum, &x| sum + (x - first));
+            let mean = first + sum * F4::splat(simd, 1.0 / K as f64);
             x.iter_mut().for_each(|x| *x = *x - mean);
         }
         // A type has at most as many rows as points.
-        let mut four_targets = [V4::ZERO; K];
+        let mut four_targets = [V4::zero(simd); K];
         let (rest, scalars) = (&self.rest[slot..slot + 4], slots.map(|slot| self.scalars.get(slot)));
         let scalars = match T::INFO.scalars {
             // So that no access needs a check.
             Scalars::Named(names) => scalars.map(|scalars| &scalars[..names.len()]),
             _ => scalars,
         };
-        let four = Four { constraints: std::array::from_fn(|i| &rest[i]), scalars };
-        let is_left = T::project_four::<FMA>(four, &x, &mut four_targets[..rows]);
-        for (lane, targets) in targets.chunks_exact_mut(rows).enumerate() {
-            for (target, four) in targets.iter_mut().zip(&four_targets) {
-                *target = four.lane(lane);
+        let four = Four { simd, constraints: std::array::from_fn(|i| &rest[i]), scalars };
+        let is_done = T::project_four(four, &x, &mut four_targets[..rows]);
+        for (row, four) in four_targets[..rows].iter().enumerate() {
+            for (i, target) in four.to_array().into_iter().enumerate() {
+                targets[i * rows + row] = target;
             }
         }
-        is_left
+        is_done
     }
 }
