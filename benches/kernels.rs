@@ -121,7 +121,7 @@ impl<T: Constraint> LaneKernel for ByFours<'_, T> {
         for slot in (0..COUNT).step_by(4) {
             let own = |i: usize| &indices[(slot + i) * k..(slot + i + 1) * k];
             for (j, x) in x[..*k].iter_mut().enumerate() {
-                *x = V4::gather(simd, std::array::from_fn(|i| points[own(i)[j] as usize]));
+                *x = V4::gather(simd, std::array::from_fn(|i| &points[own(i)[j] as usize]));
             }
             if T::INFO.rows == Rows::Centred {
                 let first = x[0];
@@ -134,8 +134,8 @@ impl<T: Constraint> LaneKernel for ByFours<'_, T> {
                 std::array::from_fn(|i| &constraints[slot + i]),
                 std::array::from_fn(|i| scalars[slot + i].as_slice()),
             );
-            let is_done = T::project_four(four, &x[..*k], &mut targets[..self.sample.row_count]).to_array();
-            for i in (0..4).filter(|&i| !is_done[i]) {
+            let is_done = T::project_four(four, &x[..*k], &mut targets[..self.sample.row_count]);
+            for i in (0..4).filter(|&i| !is_done.has(i)) {
                 let x = stencil::<T>(points, own(i));
                 constraints[slot + i].project(&scalars[slot + i], x, self.plain_targets);
             }

@@ -107,12 +107,19 @@ impl<V: Copy> Lists<V> {
         }
     }
 
-    /// True if the four lists from `i` on are of `length`.
+    /// The four lists from `i` on, if they are all of `length`.
     #[inline(always)]
-    fn are_four_of(&self, length: usize, i: usize) -> bool {
+    fn four_of(&self, length: usize, i: usize) -> Option<[&[V]; 4]> {
         match &self.places {
-            Places::Even { length: all, .. } => *all == length,
-            Places::Uneven { spans, .. } => spans[i..i + 4].iter().all(|(start, end)| end - start == length),
+            Places::Even { length: all, .. } if *all == length => {
+                let lists = &self.values[i * length..][..4 * length];
+                Some([0, 1, 2, 3].map(|j| &lists[j * length..(j + 1) * length]))
+            }
+            Places::Uneven { .. } => {
+                let lists = [i, i + 1, i + 2, i + 3].map(|i| self.get(i));
+                lists.iter().all(|list| list.len() == length).then_some(lists)
+            }
+            Places::Even { .. } => None,
         }
     }
 
@@ -368,15 +375,13 @@ impl<T: Constraint> LaneKernel for Project<'_, T> {
         let mut slot = slots.start;
         while slot < slots.end {
             let k = batch.indices.get(slot).len();
-            let is_four = slot + 4 <= slots.end && T::takes_four(k) && batch.indices.are_four_of(k, slot);
-            let count = if is_four { 4 } else { 1 };
-            let mut is_done = [false; 4];
-            if is_four {
-                let four = &mut targets[batch.target_offset(slot) - first..batch.target_offset(slot + 4) - first];
-                is_done = batch.project_four(simd, slot, k, points, four).to_array();
+            let mut is_done = None;
+            if slot + 4 <= slots.end && T::takes_four(k) {
+                is_done = batch.project_four(simd, slot, k, points, &mut targets[batch.target_offset(slot) - first..]);
             }
-            if is_done != [true; 4] {
-                for i in (slot..slot + count).filter(|i| !is_done[i - slot]) {
+            let count = if is_done.is_some() { 4 } else { 1 };
+            if !is_done.is_some_and(Mask::all) {
+                for i in (slot..slot + count).filter(|i| !is_done.is_some_and(|is_done| is_done.has(i - slot))) {
                     let (start, end) = (batch.target_offset(i) - first, batch.target_offset(i + 1) - first);
                     batch.rest[i].project(batch.scalars.get(i), batch.stencil(i, points), &mut targets[start..end]);
                 }
@@ -396,15 +401,23 @@ const fn has_points<T: Constraint>(k: usize) -> bool {
 }
 
 impl<T: Constraint> TypedBatch<T> {
-    /// Projects the constraints of four slots, of `k` points each; returns which of them are done.
+    /// Projects the constraints of four slots, if they are of `k` points each, into the beginning of `targets`; returns which of
+    /// them are done.
     #[inline(always)]
-    fn project_four<S: Isa>(&self, simd: S, slot: usize, k: usize, points: &[DVec3], targets: &mut [DVec3]) -> Mask<S> {
+    fn project_four<S: Isa>(
+        &self,
+        simd: S,
+        slot: usize,
+        k: usize,
+        points: &[DVec3],
+        targets: &mut [DVec3],
+    ) -> Option<Mask<S>> {
         // With the number of points as a constant, they stay in registers.
         macro_rules! by_point_count {
             ($($k:literal),*) => {
                 match k {
                     $($k if const { has_points::<T>($k) } => self.project_four_of::<$k, S>(simd, slot, points, targets),)*
-                    _ => Mask::none(simd),
+                    _ => None,
                 }
             };
         }
@@ -418,11 +431,18 @@ impl<T: Constraint> TypedBatch<T> {
         slot: usize,
         points: &[DVec3],
         targets: &mut [DVec3],
-    ) -> Mask<S> {
-        let slots = [slot, slot + 1, slot + 2, slot + 3];
-        let indices = slots.map(|slot| &self.indices.get(slot)[..K]);
-        let mut x: [V4<S>; K] =
-            std::array::from_fn(|j| V4::gather(simd, indices.map(|indices| points[indices[j] as usize])));
+    ) -> Option<Mask<S>> {
+        let indices = self.indices.four_of(K, slot)?;
+        let scalars = match T::INFO.scalars {
+            // So that no access needs a check.
+            Scalars::Named(names) => self.scalars.four_of(names.len(), slot)?,
+            _ => [0, 1, 2, 3].map(|i| self.scalars.get(slot + i)),
+        };
+        let rest = &self.rest[slot..slot + 4];
+        let four = Four { simd, constraints: [0, 1, 2, 3].map(|i| &rest[i]), scalars };
+        // All indices are checked before the first point is read: the numbers then go straight into vector registers.
+        let points: [[&DVec3; 4]; K] = std::array::from_fn(|j| indices.map(|indices| &points[indices[j] as usize]));
+        let mut x = points.map(|points| V4::gather(simd, points));
         let rows = match T::INFO.rows {
             Rows::Centred => K,
             Rows::Linear(rows) => rows,
@@ -436,19 +456,13 @@ impl<T: Constraint> TypedBatch<T> {
         }
         // A type has at most as many rows as points.
         let mut four_targets = [V4::zero(simd); K];
-        let (rest, scalars) = (&self.rest[slot..slot + 4], slots.map(|slot| self.scalars.get(slot)));
-        let scalars = match T::INFO.scalars {
-            // So that no access needs a check.
-            Scalars::Named(names) => scalars.map(|scalars| &scalars[..names.len()]),
-            _ => scalars,
-        };
-        let four = Four { simd, constraints: std::array::from_fn(|i| &rest[i]), scalars };
         let is_done = T::project_four(four, &x, &mut four_targets[..rows]);
+        let targets = &mut targets[..4 * rows];
         for (row, four) in four_targets[..rows].iter().enumerate() {
             for (i, target) in four.to_array().into_iter().enumerate() {
                 targets[i * rows + row] = target;
             }
         }
-        is_done
+        Some(is_done)
     }
 }

@@ -364,15 +364,15 @@ fn project_four<T: Constraint>(
             let Self(samples, x) = self;
             let stencils: [Stencil<'_>; 4] = std::array::from_fn(|i| stencil(T::INFO.rows, &x[i], &samples[i].indices));
             let lanes: Vec<V4<S>> =
-                (0..x[0].len()).map(|j| V4::gather(simd, stencils.map(|stencil| stencil.at(j)))).collect();
-            let mut targets = vec![V4::gather(simd, [DVec3::NAN; 4]); samples[0].row_count()];
+                (0..x[0].len()).map(|j| V4::gather(simd, stencils.map(|stencil| stencil.at(j)).each_ref())).collect();
+            let mut targets = vec![V4::gather(simd, [&DVec3::NAN; 4]); samples[0].row_count()];
             let four = Four::new(
                 simd,
                 std::array::from_fn(|i| &samples[i].constraint),
                 std::array::from_fn(|i| samples[i].scalars.as_slice()),
             );
-            let is_done = T::project_four(four, &lanes, &mut targets).to_array();
-            std::array::from_fn(|i| is_done[i].then(|| targets.iter().map(|target| target.to_array()[i]).collect()))
+            let is_done = T::project_four(four, &lanes, &mut targets);
+            std::array::from_fn(|i| is_done.has(i).then(|| targets.iter().map(|target| target.to_array()[i]).collect()))
         }
     }
     if is_portable { InLanes(samples, x).run(Portable) } else { dispatch_lanes(InLanes(samples, x)) }

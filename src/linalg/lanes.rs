@@ -142,11 +142,22 @@ impl<S: Isa> Mask<S> {
         F4::splat(simd, 0.0).above(F4::splat(simd, 0.0))
     }
 
-    /// Whether each lane is in.
+    /// True if lane `i` is in.
     #[inline(always)]
-    pub fn to_array(self) -> [bool; 4] {
-        let m64x4(a, b, c, d) = self.value;
-        [a, b, c, d].map(pulp::m64::is_set)
+    pub fn has(self, i: usize) -> bool {
+        self.simd.bits(self.value) >> i & 1 == 1
+    }
+
+    /// True if every lane is in.
+    #[inline(always)]
+    pub fn all(self) -> bool {
+        self.simd.bits(self.value) == 0b1111
+    }
+
+    /// True if any lane is in.
+    #[inline(always)]
+    pub fn any(self) -> bool {
+        self.simd.bits(self.value) != 0
     }
 }
 
@@ -198,7 +209,7 @@ impl<S: Isa> V4<S> {
 
     /// One vector per lane.
     #[inline(always)]
-    pub fn gather(simd: S, vectors: [DVec3; 4]) -> Self {
+    pub fn gather(simd: S, vectors: [&DVec3; 4]) -> Self {
         let [x, y, z] = [0, 1, 2].map(|axis| F4::new(simd, vectors.map(|vector| vector[axis])));
         Self { x, y, z }
     }
@@ -393,7 +404,7 @@ pub fn svd<const N: usize, S: Isa>(simd: S, columns: [V4<S>; N]) -> Svd4<N, S> {
                 }
             }
         }
-        if is_left.to_array() == [false; 4] {
+        if !is_left.any() {
             break;
         }
     }

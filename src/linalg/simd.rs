@@ -14,6 +14,9 @@ pub trait Isa: pulp::Simd<f64s = f64x4, m64s = m64x4> {
 
     /// `a b + c`, the fastest way.
     fn product_and_sum(self, a: f64x4, b: f64x4, c: f64x4) -> f64x4;
+
+    /// Bit `i` says whether lane `i` is set.
+    fn bits(self, mask: m64x4) -> i32;
 }
 
 // AVX2 and FMA.
@@ -25,6 +28,11 @@ impl Isa for pulp::x86::V3 {
     fn product_and_sum(self, a: f64x4, b: f64x4, c: f64x4) -> f64x4 {
         self.mul_add_f64x4(a, b, c)
     }
+
+    #[inline(always)]
+    fn bits(self, mask: m64x4) -> i32 {
+        self.avx._mm256_movemask_pd(pulp::cast(mask))
+    }
 }
 
 impl Isa for Portable {
@@ -35,6 +43,12 @@ impl Isa for Portable {
     fn product_and_sum(self, a: f64x4, b: f64x4, c: f64x4) -> f64x4 {
         let lane = mul_add::<{ Self::FUSES }>;
         f64x4(lane(a.0, b.0, c.0), lane(a.1, b.1, c.1), lane(a.2, b.2, c.2), lane(a.3, b.3, c.3))
+    }
+
+    #[inline(always)]
+    fn bits(self, m64x4(a, b, c, d): m64x4) -> i32 {
+        let bit = |lane: pulp::m64, i: i32| i32::from(lane.is_set()) << i;
+        bit(a, 0) | bit(b, 1) | bit(c, 2) | bit(d, 3)
     }
 }
 
