@@ -99,15 +99,16 @@ impl Constraint for Circle {
 
     #[inline(always)]
     fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
-        let (diagonal, off) = lanes::scatter(four.simd, x);
-        let (normal, is_accurate) = lanes::least_eigenvector(diagonal, off);
-        let (u, v) = lanes::orthogonal_pair(normal);
-        // The flattened points, then their moments of second and third order.
         let [zero, half, one] = [0.0, 0.5, 1.0].map(|value| four.splat(value));
-        let size = one / (diagonal.x + diagonal.y + diagonal.z).sqrt();
+        let (diagonal, off) = lanes::scatter(four.simd, x);
+        let (normal, squared, is_accurate) = lanes::least_eigenvector(diagonal, off);
+        let (u, v) = lanes::orthogonal_pair(normal * (one / squared.sqrt()));
+        // The flattened points, then their moments of second and third order.
+        let size = (diagonal.x + diagonal.y + diagonal.z).sqrt();
+        let per_size = one / size;
         let (mut uu, mut uv, mut vv, mut bu, mut bv) = (zero, zero, zero, zero, zero);
         for (target, &point) in targets.iter_mut().zip(x) {
-            let (a, b) = (point.dot(u) * size, point.dot(v) * size);
+            let (a, b) = (point.dot(u) * per_size, point.dot(v) * per_size);
             let square = a.mul_add(a, b * b);
             (uu, uv, vv) = (a.mul_add(a, uu), a.mul_add(b, uv), b.mul_add(b, vv));
             (bu, bv) = (a.mul_add(square, bu), b.mul_add(square, bv));
@@ -126,7 +127,7 @@ impl Constraint for Circle {
             let distance = a.mul_add(a, b * b).sqrt();
             least_distance = least_distance.min(distance);
             let factor = radius / distance;
-            let (a, b) = (a.mul_add(factor, center_u) / size, b.mul_add(factor, center_v) / size);
+            let (a, b) = (a.mul_add(factor, center_u) * size, b.mul_add(factor, center_v) * size);
             *target = u.mul_add(a, v * b);
         }
         // Points at the center have no direction; on flat arcs the center is far away.

@@ -53,11 +53,7 @@ impl Constraint for Parallelogram {
 
     #[inline(always)]
     fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
-        let (diagonal, off) = lanes::scatter(four.simd, x);
-        let (normal, is_accurate) = lanes::least_eigenvector(diagonal, off);
-        for (target, &point) in targets.iter_mut().zip(x) {
-            *target = normal.mul_add(-point.dot(normal), point);
-        }
+        let is_accurate = lanes::flatten(four.simd, x, targets);
         let gap = (targets[0] - targets[1] + targets[2] - targets[3]) * four.splat(0.25);
         for (i, target) in targets.iter_mut().enumerate() {
             *target = if i % 2 == 0 { *target - gap } else { *target + gap };

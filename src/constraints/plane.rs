@@ -48,12 +48,7 @@ impl Constraint for Plane {
 
     #[inline(always)]
     fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
-        let (diagonal, off) = lanes::scatter(four.simd, x);
-        let (normal, is_accurate) = lanes::least_eigenvector(diagonal, off);
-        for (target, &point) in targets.iter_mut().zip(x) {
-            *target = normal.mul_add(-point.dot(normal), point);
-        }
-        is_accurate
+        lanes::flatten(four.simd, x, targets)
     }
 
     fn violation(&self, _scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -73,10 +73,10 @@ impl Constraint for Rectangle {
 
     #[inline(always)]
     fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
-        let [zero, half] = [0.0, 0.5].map(|value| four.splat(value));
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(|value| four.splat(value));
         let (diagonal, off) = lanes::scatter(four.simd, x);
-        let (normal, is_accurate) = lanes::least_eigenvector(diagonal, off);
-        let (u, v) = lanes::orthogonal_pair(normal);
+        let (normal, squared, is_accurate) = lanes::least_eigenvector(diagonal, off);
+        let (u, v) = lanes::orthogonal_pair(normal * (one / squared.sqrt()));
         let corners: [[F4<S>; 2]; 4] = std::array::from_fn(|i| [x[i].dot(u), x[i].dot(v)]);
         // Those of the sides 12 and 30 are turned by a right angle.
         let side = |i: usize| {

@@ -290,30 +290,29 @@ pub fn scatter<S: Isa>(simd: S, x: &[V4<S>]) -> (V4<S>, V4<S>) {
     (diagonal, off)
 }
 
-/// Newton steps to the least eigenvalue: from 0 they rise towards it without passing it, and where it is at most
-/// [`LARGEST_LEAST`] of the middle one each step about squares the distance.
-const NEWTON_STEPS: usize = 5;
+/// Steps of Halley's method to the least eigenvalue: from 0 they rise towards it without passing it, and where it is at most
+/// [`LARGEST_LEAST`] of the middle one each step about cubes the distance.
+const HALLEY_STEPS: usize = 3;
 
 /// The least eigenvalue as a part of the middle one up to which its eigenvector is trusted to the closed form.
-const LARGEST_LEAST: f64 = 0.25;
+const LARGEST_LEAST: f64 = 0.2;
 
 /// The sum of products of two eigenvalues, as a part of the trace squared, from which the closed form is trusted. It is at most
 /// three times the middle one as a part of the trace; what the closed form loses against Jacobi rotations is about the square of
 /// that part's inverse, in units of round-off.
 const LEAST_PRODUCTS: f64 = 0.01;
 
-/// Unit eigenvectors of the least eigenvalues of four scatters, and for which the closed form is accurate: not for
-/// near-collinear points, nor for points that are about as far from every plane.
+/// Eigenvectors of the least eigenvalues of four scatters, the squares of their lengths, and for which the closed form is accurate:
+/// not for near-collinear points, nor for points that are about as far from every plane.
 ///
 /// The least eigenvalue `λ` is the least root of the characteristic polynomial; the eigenvector is the longest cross product of two
 /// rows of `A − λ I`.
 #[inline(always)]
-pub fn least_eigenvector<S: Isa>(diagonal: V4<S>, off: V4<S>) -> (V4<S>, Mask<S>) {
+pub fn least_eigenvector<S: Isa>(diagonal: V4<S>, off: V4<S>) -> (V4<S>, F4<S>, Mask<S>) {
     let number = |value| F4::splat(diagonal.simd(), value);
     let [zero, one, two, three] = [0.0, 1.0, 2.0, 3.0].map(number);
-    let trace = diagonal.x + diagonal.y + diagonal.z;
-    // A unit trace keeps cubes of tiny and huge coordinates in range; where it is 0, anything will do.
-    let scale = trace.where_above(zero, one / trace, zero);
+    // A unit trace keeps cubes of tiny and huge coordinates in range. Where it is 0, NaN follows, and no bound below holds.
+    let scale = one / (diagonal.x + diagonal.y + diagonal.z);
     let (d, o) = (diagonal * scale, off * scale);
     // λ³ − λ² + b λ − c.
     let minor_x = d.y.mul_add(d.z, -(o.x * o.x));
@@ -322,29 +321,40 @@ pub fn least_eigenvector<S: Isa>(diagonal: V4<S>, off: V4<S>) -> (V4<S>, Mask<S>
     let b = minor_x + minor_y + minor_z;
     let c = d.x.mul_add(minor_x, o.z.mul_add(o.x * o.y - o.z * d.z, o.y * (o.z * o.x - o.y * d.y)));
     let mut least = zero;
-    for _ in 0..NEWTON_STEPS {
+    for _ in 0..HALLEY_STEPS {
         let value = (least - one).mul_add(least, b).mul_add(least, -c);
         let slope = three.mul_add(least, -two).mul_add(least, b);
-        least = slope.where_above(zero, least - value / slope, least);
+        let half_curvature = three.mul_add(least, -one);
+        least = least - value * slope / slope.mul_add(slope, -(value * half_curvature));
     }
     let shifted = V4 { x: d.x - least, y: d.y - least, z: d.z - least };
     let rows =
         [V4 { x: shifted.x, y: o.z, z: o.y }, V4 { x: o.z, y: shifted.y, z: o.x }, V4 { x: o.y, y: o.x, z: shifted.z }];
     let mut best = rows[0].cross(rows[1]);
-    let mut size = best.dot(best);
+    let mut squared = best.dot(best);
     for (a, b) in [(1, 2), (2, 0)] {
         let other = rows[a].cross(rows[b]);
-        let other_size = other.dot(other);
-        best = V4::where_above(other_size, size, other, best);
-        size = size.max(other_size);
+        let other_squared = other.dot(other);
+        best = V4::where_above(other_squared, squared, other, best);
+        squared = squared.max(other_squared);
     }
-    let normal = best * (one / size.sqrt());
     // The other two eigenvalues have the sum 1 − λ and the product b − λ (1 − λ): the middle one is about their quotient.
-    let sum = one - least;
-    let middle = (b - least * sum) / sum;
-    let is_accurate =
-        b.above(number(LEAST_PRODUCTS)) & (number(LARGEST_LEAST) * middle).above(least) & size.above(zero);
-    (normal, is_accurate)
+    let least_by_sum = least * (one - least);
+    let is_least = (number(LARGEST_LEAST) * (b - least_by_sum)).above(least_by_sum);
+    (best, squared, b.above(number(LEAST_PRODUCTS)) & is_least & squared.above(zero))
+}
+
+/// Projects four sets of points `x` about their means onto the planes through the means that are nearest to them; returns where
+/// that is accurate.
+#[inline(always)]
+pub fn flatten<S: Isa>(simd: S, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
+    let (diagonal, off) = scatter(simd, x);
+    let (normal, squared, is_accurate) = least_eigenvector(diagonal, off);
+    let factor = F4::splat(simd, -1.0) / squared;
+    for (target, &point) in targets.iter_mut().zip(x) {
+        *target = normal.mul_add(point.dot(normal) * factor, point);
+    }
+    is_accurate
 }
 
 /// Sweeps of Jacobi rotations at most: from the fourth on hardly any lane needs one.
@@ -384,9 +394,11 @@ pub fn svd<const N: usize, S: Isa>(simd: S, columns: [V4<S>; N]) -> Svd4<N, S> {
                 let difference = beta - alpha;
                 let sum = difference.abs() + difference.mul_add(difference, four * squared).sqrt();
                 let signed = difference.where_above(number(-f64::MIN_POSITIVE), gamma + gamma, -(gamma + gamma));
-                let t = sum.where_above(zero, signed / sum, zero);
-                let c = one / t.mul_add(t, one).sqrt();
-                let s = t * c;
+                // The cosine and the sine of the angle whose tangent is t = signed/sum.
+                let squared = sum.mul_add(sum, signed * signed);
+                let scale = one / squared.sqrt();
+                let c = squared.where_above(zero, sum * scale, one);
+                let s = squared.where_above(zero, signed * scale, zero);
                 (a[p], a[q]) = (
                     V4 {
                         x: c.mul_add(a[p].x, -(s * a[q].x)),
