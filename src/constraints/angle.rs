@@ -155,8 +155,8 @@ impl Constraint for Angle {
         let theta_sin = opposite * half_per_hypotenuse / theta_cos;
         let phi_cos = eta_cos.mul_add(theta_cos, eta_sin * theta_sin);
         let phi_sin = eta_sin.mul_add(theta_cos, -(eta_cos * theta_sin));
-        // The foot of an edge `l u` on its new direction: l cos (cos u + sin across), `across` = (other's unit − cos u)/sin.
         let is_off = large.max(small);
+        // The foot of an edge `l u` on its new direction: l cos (cos u + sin across), `across` = (other's unit − cos u)/sin.
         let per_sin = one / sin;
         let turns = [(e, f, ee, theta_cos, theta_sin), (f, e, ff, phi_cos, phi_sin)];
         for (target, (edge, other, squared, turn_cos, turn_sin)) in targets.iter_mut().zip(turns) {

@@ -85,9 +85,9 @@ impl Constraint for EdgeStrain {
         let scale = length * current;
         let factor = current.max(range_min * length).min(range_max * length) / scale;
         targets[0] = edge * factor;
-        // Not edges without a length, nor numbers out of the range in which all their digits are kept.
+        // Not edges without a length, nor numbers too small to keep all digits, nor infinite ones.
         let [least, greatest] = [f64::MIN_POSITIVE, f64::MAX].map(|value| four.splat(value));
-        squared.min(scale).above(least) & greatest.above(squared.max(factor))
+        squared.min(scale).above(least) & greatest.above(squared.max(scale).max(factor))
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -1,8 +1,8 @@
 //! Four numbers at a time, one of each of four constraints.
 //!
-//! An instruction is inlined only into code that is compiled for its instruction set, and all of that is
-//! `#[inline(always)]`. A closure cannot be marked so: one that computes more than a little should be a loop or a function, or
-//! each of its instructions becomes a call.
+//! Instructions are inlined only into code that is compiled for their instruction set, so every function between them and
+//! [`super::simd::dispatch_lanes`] is `#[inline(always)]`. A closure cannot be marked so: one that computes more than a little
+//! should be a loop or a function, or each of its instructions becomes a call.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
@@ -97,7 +97,7 @@ impl<S: Isa> F4<S> {
         Self { value: self.simd.min_f64s(self.value, other.value), ..self }
     }
 
-    /// Where `self > bound`; not where either is NaN.
+    /// The lanes where `self > bound`; not those where either is NaN.
     #[inline(always)]
     pub fn above(self, bound: Self) -> Mask<S> {
         Mask { value: self.simd.greater_than_f64s(self.value, bound.value), simd: self.simd }
@@ -340,8 +340,8 @@ pub fn least_eigenvector<S: Isa>(diagonal: V4<S>, off: V4<S>) -> (V4<S>, F4<S>, 
     }
     // The other two eigenvalues have the sum 1 − λ and the product b − λ (1 − λ): the middle one is about their quotient.
     let least_by_sum = least * (one - least);
-    let is_least = (number(LARGEST_LEAST) * (b - least_by_sum)).above(least_by_sum);
-    (best, squared, b.above(number(LEAST_PRODUCTS)) & is_least & squared.above(zero))
+    let is_small = (number(LARGEST_LEAST) * (b - least_by_sum)).above(least_by_sum);
+    (best, squared, b.above(number(LEAST_PRODUCTS)) & is_small & squared.above(zero))
 }
 
 /// Projects four sets of points `x` about their means onto the planes through the means that are nearest to them; returns where
@@ -382,7 +382,9 @@ pub fn svd<const N: usize, S: Isa>(simd: S, columns: [V4<S>; N]) -> Svd4<N, S> {
     let number = |value| F4::splat(simd, value);
     let [zero, one, four] = [0.0, 1.0, 4.0].map(number);
     let mut v = [[zero; N]; N];
-    (0..N).for_each(|i| v[i][i] = one);
+    for i in 0..N {
+        v[i][i] = one;
+    }
     for _ in 0..MAX_SWEEPS {
         let mut is_left = Mask::none(simd);
         for p in 0..N {
