@@ -6,8 +6,8 @@
 use divan::{Bencher, black_box};
 use glam::DVec3;
 use shapeop::constraints::{self, Constraint, Four, Rows, Stencil};
-use shapeop::linalg::lanes::V4;
-use shapeop::linalg::simd::{Kernel, dispatch};
+use shapeop::linalg::lanes::{F4, V4};
+use shapeop::linalg::simd::{Isa, LaneKernel, dispatch_lanes};
 
 /// Constraints that one iteration projects; a multiple of four.
 const COUNT: usize = 1000;
@@ -108,39 +108,38 @@ fn plain<T: Constraint>(bencher: Bencher<'_, '_>) {
 /// All constraints of a sample, four at a time, and what is left over the plain way, as in the solver.
 struct ByFours<'a, T> {
     sample: &'a Sample<T>,
-    /// Written anew by each four.
-    targets: &'a mut [V4],
     plain_targets: &'a mut [DVec3],
 }
 
-impl<T: Constraint> Kernel for ByFours<'_, T> {
+impl<T: Constraint> LaneKernel for ByFours<'_, T> {
     type Output = ();
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) {
+    fn run<S: Isa>(self, simd: S) {
         let Sample { k, constraints, scalars, points, indices, .. } = self.sample;
-        let mut x = [V4::ZERO; 8];
+        let (mut x, mut targets) = ([V4::zero(simd); 8], [V4::zero(simd); 8]);
         for slot in (0..COUNT).step_by(4) {
             let own = |i: usize| &indices[(slot + i) * k..(slot + i + 1) * k];
             for (j, x) in x[..*k].iter_mut().enumerate() {
-                *x = V4::gather(std::array::from_fn(|i| points[own(i)[j] as usize]));
+                *x = V4::gather(simd, std::array::from_fn(|i| &points[own(i)[j] as usize]));
             }
             if T::INFO.rows == Rows::Centred {
                 let first = x[0];
-                let sum = x[1..*k].iter().fold(V4::ZERO, |sum, &x| sum + (x - first));
-                let mean = first + sum * shapeop::linalg::lanes::F4::splat(1.0 / *k as f64);
+                let sum = x[1..*k].iter().fold(V4::zero(simd), |sum, &x| sum + (x - first));
+                let mean = first + sum * F4::splat(simd, 1.0 / *k as f64);
                 x[..*k].iter_mut().for_each(|x| *x = *x - mean);
             }
             let four = Four::new(
+                simd,
                 std::array::from_fn(|i| &constraints[slot + i]),
                 std::array::from_fn(|i| scalars[slot + i].as_slice()),
             );
-            let is_left = T::project_four::<FMA>(four, &x[..*k], self.targets);
-            for i in (0..4).filter(|&i| is_left[i]) {
+            let is_done = T::project_four(four, &x[..*k], &mut targets[..self.sample.row_count]);
+            for i in (0..4).filter(|&i| !is_done.has(i)) {
                 let x = stencil::<T>(points, own(i));
                 constraints[slot + i].project(&scalars[slot + i], x, self.plain_targets);
             }
-            black_box(&self.targets);
+            black_box(&targets);
         }
     }
 }
@@ -163,10 +162,9 @@ impl<T: Constraint> Kernel for ByFours<'_, T> {
 fn by_fours<T: Constraint>(bencher: Bencher<'_, '_>) {
     let sample = Sample::<T>::new();
     assert!(T::takes_four(sample.k), "{} does not project four at once", T::INFO.name);
-    let mut targets = vec![V4::ZERO; sample.row_count];
     let mut plain_targets = vec![DVec3::ZERO; sample.row_count];
     bencher.bench_local(|| {
         let sample = black_box(&sample);
-        dispatch(ByFours { sample, targets: &mut targets, plain_targets: &mut plain_targets });
+        dispatch_lanes(ByFours { sample, plain_targets: &mut plain_targets });
     });
 }

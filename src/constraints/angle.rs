@@ -16,7 +16,8 @@ use glam::DVec3;
 
 use super::{Constraint, Four, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo};
 use crate::error::{Error, Result, Status};
-use crate::linalg::lanes::{F4, V4};
+use crate::linalg::lanes::{F4, Mask, V4};
+use crate::linalg::simd::Isa;
 
 /// Edges are collinear where `1 − |cos|` is at or below this, as libShapeOp has it.
 const COLLINEAR: f64 = 1e-14;
@@ -125,49 +126,46 @@ impl Constraint for Angle {
     /// As [`Self::project`], by cosines and sines alone: those of the correction `η` from those of the angle and of its bound, those
     /// of `θ` by halving the angle whose tangent is given.
     #[inline(always)]
-    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
-        let (zero, half, one) = (F4::splat(0.0), F4::splat(0.5), F4::splat(1.0));
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(|value| four.splat(value));
         let (e, f) = (x[1] - x[0], x[2] - x[0]);
-        let (ee, ff) = (e.dot::<FMA>(e), f.dot::<FMA>(f));
-        let normal = e.cross::<FMA>(f);
+        let (ee, ff) = (e.dot(e), f.dot(f));
+        let normal = e.cross(f);
         let product = (ee * ff).sqrt();
-        let cos = e.dot::<FMA>(f) / product;
-        let sin = normal.dot::<FMA>(normal).sqrt() / product;
-        let bound = |i: usize, large: F4| {
+        let per_product = one / product;
+        let cos = e.dot(f) * per_product;
+        let sin = normal.dot(normal).sqrt() * per_product;
+        let bound = |i: usize, large: F4<S>| {
             large.where_above(zero, four.rest(|angle| angle.max[i]), four.rest(|angle| angle.min[i]))
         };
         // Positive where the angle is too large, or where it is too small; the bounds are in [0, π], where the cosine falls.
         let large = four.rest(|angle| angle.max[0]) - cos;
         let small = cos - four.rest(|angle| angle.min[0]);
         let (bound_cos, bound_sin) = (bound(0, large), bound(1, large));
-        let eta_cos = cos.mul_add::<FMA>(bound_cos, sin * bound_sin);
+        let eta_cos = cos.mul_add(bound_cos, sin * bound_sin);
         // Signed: below 0 where the edges turn away from each other.
-        let eta_sin = sin.mul_add::<FMA>(bound_cos, -(cos * bound_sin));
+        let eta_sin = sin.mul_add(bound_cos, -(cos * bound_sin));
         let ratio = ff / ee;
         let double_sin = (eta_sin + eta_sin) * eta_cos;
         let double_cos = one - (eta_sin + eta_sin) * eta_sin;
-        let (opposite, adjacent) = (ratio * double_sin, ratio.mul_add::<FMA>(double_cos, one));
-        let hypotenuse = opposite.mul_add::<FMA>(opposite, adjacent * adjacent).sqrt();
-        let theta_cos = (half + half * (adjacent / hypotenuse)).sqrt();
-        let theta_sin = half * (opposite / hypotenuse) / theta_cos;
-        let phi_cos = eta_cos.mul_add::<FMA>(theta_cos, eta_sin * theta_sin);
-        let phi_sin = eta_sin.mul_add::<FMA>(theta_cos, -(eta_cos * theta_sin));
-        // The foot of an edge `l u` on its new direction: l cos (cos u + sin across), `across` = (other's unit − cos u)/sin.
-        let turned = |edge: V4, other: V4, scale: F4, turn_cos: F4, turn_sin: F4| {
-            let along = turn_cos * (turn_cos - turn_sin * cos / sin);
-            edge.mul_add::<FMA>(along, other * (turn_cos * turn_sin * scale / sin))
-        };
+        let (opposite, adjacent) = (ratio * double_sin, ratio.mul_add(double_cos, one));
+        let hypotenuse = opposite.mul_add(opposite, adjacent * adjacent).sqrt();
+        let half_per_hypotenuse = half / hypotenuse;
+        let theta_cos = (half + adjacent * half_per_hypotenuse).sqrt();
+        let theta_sin = opposite * half_per_hypotenuse / theta_cos;
+        let phi_cos = eta_cos.mul_add(theta_cos, eta_sin * theta_sin);
+        let phi_sin = eta_sin.mul_add(theta_cos, -(eta_cos * theta_sin));
         let is_off = large.max(small);
-        let length_ratio = ratio.sqrt();
-        let moved =
-            [turned(e, f, one / length_ratio, theta_cos, theta_sin), turned(f, e, length_ratio, phi_cos, phi_sin)];
-        for ((target, moved), edge) in targets.iter_mut().zip(moved).zip([e, f]) {
+        // The foot of an edge `l u` on its new direction: l cos (cos u + sin across), `across` = (other's unit − cos u)/sin.
+        let per_sin = one / sin;
+        let turns = [(e, f, ee, theta_cos, theta_sin), (f, e, ff, phi_cos, phi_sin)];
+        for (target, (edge, other, squared, turn_cos, turn_sin)) in targets.iter_mut().zip(turns) {
+            let along = turn_cos * (turn_cos - turn_sin * (cos * per_sin));
+            let moved = edge.mul_add(along, other * (turn_cos * turn_sin * (squared * per_product) * per_sin));
             *target = V4::where_above(is_off, zero, moved, edge);
         }
-        std::array::from_fn(|i| {
-            let is_safe = eta_cos.0[i] > LEAST_COSINE && sin.0[i] * sin.0[i] > LEAST_SQUARED_SINE;
-            !(is_safe && product.0[i] > f64::MIN_POSITIVE && product.0[i] < f64::MAX)
-        })
+        let is_safe = eta_cos.above(four.splat(LEAST_COSINE)) & (sin * sin).above(four.splat(LEAST_SQUARED_SINE));
+        is_safe & product.above(four.splat(f64::MIN_POSITIVE)) & four.splat(f64::MAX).above(product)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -15,7 +15,8 @@ use super::deformation::{
 };
 use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
-use crate::linalg::lanes::{self, V4};
+use crate::linalg::lanes::{self, Mask, V4};
+use crate::linalg::simd::Isa;
 
 /// One Area constraint: its rest shape.
 #[derive(Clone, Debug)]
@@ -63,10 +64,10 @@ impl Constraint for Area {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
-        let svd = lanes::svd::<2, FMA>(gradient_four::<2, FMA, _>(&four, |triangle| &triangle.0, x));
-        let s = move_product_into_four::<2, FMA>(svd.s, [four.scalar(0), four.scalar(1)]);
-        svd.recompose::<FMA>(s, targets)
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
+        let svd = lanes::svd(four.simd, gradient_four::<2, _, _>(&four, |triangle| &triangle.0, x));
+        let s = move_product_into_four(svd.s, [four.scalar(0), four.scalar(1)]);
+        svd.recompose(s, targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -5,8 +5,8 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::{Constraint, Rows, Scalars, Stencil, TypeInfo};
-use crate::linalg::lanes::{F4, V4};
-use crate::linalg::simd::{Kernel, dispatch};
+use crate::linalg::lanes::{F4, Mask, V4};
+use crate::linalg::simd::{Isa, LaneKernel, dispatch_lanes};
 
 /// All constraints of one type. A *slot* is a constraint's place in the batch; removing constraints moves the later ones
 /// down, so slots change where ids do not.
@@ -110,12 +110,19 @@ impl<V: Copy> Lists<V> {
         }
     }
 
-    /// True if the four lists from `i` on are of `length`.
+    /// The four lists from `i` on, if they are all of `length`.
     #[inline(always)]
-    fn are_four_of(&self, length: usize, i: usize) -> bool {
+    fn four_of(&self, length: usize, i: usize) -> Option<[&[V]; 4]> {
         match &self.places {
-            Places::Even { length: all, .. } => *all == length,
-            Places::Uneven { spans, .. } => spans[i..i + 4].iter().all(|(start, end)| end - start == length),
+            Places::Even { length: all, .. } if *all == length => {
+                let lists = &self.values[i * length..][..4 * length];
+                Some([0, 1, 2, 3].map(|j| &lists[j * length..(j + 1) * length]))
+            }
+            Places::Uneven { .. } => {
+                let lists = [i, i + 1, i + 2, i + 3].map(|i| self.get(i));
+                lists.iter().all(|list| list.len() == length).then_some(lists)
+            }
+            Places::Even { .. } => None,
         }
     }
 
@@ -271,7 +278,7 @@ impl<T: Constraint> Batch for TypedBatch<T> {
     }
 
     fn project(&self, slots: Range<usize>, points: &[DVec3], targets: &mut [DVec3]) {
-        dispatch(Project { batch: self, slots, points, targets });
+        dispatch_lanes(Project { batch: self, slots, points, targets });
     }
 
     fn squared_residual(&self, slots: Range<usize>, points: &[DVec3], targets: &[DVec3], stiffness: &[f64]) -> f64 {
@@ -326,27 +333,35 @@ impl<T: Constraint> Batch for TypedBatch<T> {
 
 /// What [`Constraint::project_four`] sees of four constraints besides their points.
 #[derive(Clone, Copy, Debug)]
-pub struct Four<'a, T> {
+pub struct Four<'a, T, S> {
+    /// The instruction set.
+    pub simd: S,
     constraints: [&'a T; 4],
     scalars: [&'a [f64]; 4],
 }
 
-impl<'a, T> Four<'a, T> {
+impl<'a, T, S: Isa> Four<'a, T, S> {
     /// Four rest states with the scalars in force of each.
-    pub fn new(constraints: [&'a T; 4], scalars: [&'a [f64]; 4]) -> Self {
-        Self { constraints, scalars }
+    pub fn new(simd: S, constraints: [&'a T; 4], scalars: [&'a [f64]; 4]) -> Self {
+        Self { simd, constraints, scalars }
+    }
+
+    /// The same number for all.
+    #[inline(always)]
+    pub fn splat(&self, value: f64) -> F4<S> {
+        F4::splat(self.simd, value)
     }
 
     /// Scalar `i` of each.
     #[inline(always)]
-    pub fn scalar(&self, i: usize) -> F4 {
-        F4(self.scalars.map(|scalars| scalars[i]))
+    pub fn scalar(&self, i: usize) -> F4<S> {
+        F4::new(self.simd, self.scalars.map(|scalars| scalars[i]))
     }
 
     /// A number of each rest state.
     #[inline(always)]
-    pub fn rest(&self, number: impl Fn(&T) -> f64) -> F4 {
-        F4(self.constraints.map(number))
+    pub fn rest(&self, number: impl Fn(&T) -> f64) -> F4<S> {
+        F4::new(self.simd, self.constraints.map(number))
     }
 }
 
@@ -358,25 +373,23 @@ struct Project<'a, T> {
     targets: &'a mut [DVec3],
 }
 
-impl<T: Constraint> Kernel for Project<'_, T> {
+impl<T: Constraint> LaneKernel for Project<'_, T> {
     type Output = ();
 
     #[inline(always)]
-    fn run<const FMA: bool>(self) {
+    fn run<S: Isa>(self, simd: S) {
         let Self { batch, slots, points, targets } = self;
         let first = batch.target_offset(slots.start);
         let mut slot = slots.start;
         while slot < slots.end {
             let k = batch.indices.get(slot).len();
-            let is_four = slot + 4 <= slots.end && T::takes_four(k) && batch.indices.are_four_of(k, slot);
-            let count = if is_four { 4 } else { 1 };
-            let mut is_left = [true; 4];
-            if is_four {
-                let four = &mut targets[batch.target_offset(slot) - first..batch.target_offset(slot + 4) - first];
-                is_left = batch.project_four::<FMA>(slot, k, points, four);
+            let mut is_done = None;
+            if slot + 4 <= slots.end && T::takes_four(k) {
+                is_done = batch.project_four(simd, slot, k, points, &mut targets[batch.target_offset(slot) - first..]);
             }
-            if is_left != [false; 4] {
-                for i in (slot..slot + count).filter(|i| is_left[i - slot]) {
+            let count = if is_done.is_some() { 4 } else { 1 };
+            if !is_done.is_some_and(Mask::all) {
+                for i in (slot..slot + count).filter(|i| !is_done.is_some_and(|is_done| is_done.has(i - slot))) {
                     let (start, end) = (batch.target_offset(i) - first, batch.target_offset(i + 1) - first);
                     batch.rest[i].project(batch.scalars.get(i), batch.stencil(i, points), &mut targets[start..end]);
                 }
@@ -396,21 +409,23 @@ const fn has_points<T: Constraint>(k: usize) -> bool {
 }
 
 impl<T: Constraint> TypedBatch<T> {
-    /// Projects the constraints of four slots, of `k` points each; returns which of them are still to do.
+    /// Projects the constraints of four slots, if they are of `k` points each, into the beginning of `targets`; returns which of
+    /// them are done.
     #[inline(always)]
-    fn project_four<const FMA: bool>(
+    fn project_four<S: Isa>(
         &self,
+        simd: S,
         slot: usize,
         k: usize,
         points: &[DVec3],
         targets: &mut [DVec3],
-    ) -> [bool; 4] {
+    ) -> Option<Mask<S>> {
         // With the number of points as a constant, they stay in registers.
         macro_rules! by_point_count {
             ($($k:literal),*) => {
                 match k {
-                    $($k if const { has_points::<T>($k) } => self.project_four_of::<$k, FMA>(slot, points, targets),)*
-                    _ => [true; 4],
+                    $($k if const { has_points::<T>($k) } => self.project_four_of::<$k, S>(simd, slot, points, targets),)*
+                    _ => None,
                 }
             };
         }
@@ -418,15 +433,24 @@ impl<T: Constraint> TypedBatch<T> {
     }
 
     #[inline(always)]
-    fn project_four_of<const K: usize, const FMA: bool>(
+    fn project_four_of<const K: usize, S: Isa>(
         &self,
+        simd: S,
         slot: usize,
         points: &[DVec3],
         targets: &mut [DVec3],
-    ) -> [bool; 4] {
-        let slots = [slot, slot + 1, slot + 2, slot + 3];
-        let indices = slots.map(|slot| &self.indices.get(slot)[..K]);
-        let mut x: [V4; K] = std::array::from_fn(|j| V4::gather(indices.map(|indices| points[indices[j] as usize])));
+    ) -> Option<Mask<S>> {
+        let indices = self.indices.four_of(K, slot)?;
+        let scalars = match T::INFO.scalars {
+            // So that no access needs a check.
+            Scalars::Named(names) => self.scalars.four_of(names.len(), slot)?,
+            _ => [0, 1, 2, 3].map(|i| self.scalars.get(slot + i)),
+        };
+        let rest = &self.rest[slot..slot + 4];
+        let four = Four { simd, constraints: [0, 1, 2, 3].map(|i| &rest[i]), scalars };
+        // All indices are checked before the first point is read: the numbers then go straight into vector registers.
+        let points: [[&DVec3; 4]; K] = std::array::from_fn(|j| indices.map(|indices| &points[indices[j] as usize]));
+        let mut x = points.map(|points| V4::gather(simd, points));
         let rows = match T::INFO.rows {
             Rows::Centred => K,
             Rows::Linear(rows) => rows,
@@ -434,25 +458,19 @@ impl<T: Constraint> TypedBatch<T> {
         if T::INFO.rows == Rows::Centred {
             // Summed relative to the first point: far from the origin the mean keeps the digits that differences have.
             let first = x[0];
-            let sum = x[1..].iter().fold(V4::ZERO, |sum, &x| sum + (x - first));
-            let mean = first + sum * F4::splat(1.0 / K as f64);
+            let sum = x[1..].iter().fold(V4::zero(simd), |sum, &x| sum + (x - first));
+            let mean = first + sum * F4::splat(simd, 1.0 / K as f64);
             x.iter_mut().for_each(|x| *x = *x - mean);
         }
         // A type has at most as many rows as points.
-        let mut four_targets = [V4::ZERO; K];
-        let (rest, scalars) = (&self.rest[slot..slot + 4], slots.map(|slot| self.scalars.get(slot)));
-        let scalars = match T::INFO.scalars {
-            // So that no access needs a check.
-            Scalars::Named(names) => scalars.map(|scalars| &scalars[..names.len()]),
-            _ => scalars,
-        };
-        let four = Four { constraints: std::array::from_fn(|i| &rest[i]), scalars };
-        let is_left = T::project_four::<FMA>(four, &x, &mut four_targets[..rows]);
-        for (lane, targets) in targets.chunks_exact_mut(rows).enumerate() {
-            for (target, four) in targets.iter_mut().zip(&four_targets) {
-                *target = four.lane(lane);
+        let mut four_targets = [V4::zero(simd); K];
+        let is_done = T::project_four(four, &x, &mut four_targets[..rows]);
+        let targets = &mut targets[..4 * rows];
+        for (row, four) in four_targets[..rows].iter().enumerate() {
+            for (i, target) in four.to_array().into_iter().enumerate() {
+                targets[i * rows + row] = target;
             }
         }
-        is_left
+        Some(is_done)
     }
 }

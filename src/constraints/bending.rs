@@ -14,7 +14,8 @@ use glam::DVec3;
 
 use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
-use crate::linalg::lanes::{F4, V4};
+use crate::linalg::lanes::{Mask, V4};
+use crate::linalg::simd::Isa;
 
 /// A norm of `e` below this multiple of the longest rest edge counts as flat: the threshold that libShapeOp takes in
 /// absolute terms, made independent of the model's unit.
@@ -123,17 +124,17 @@ impl Constraint for Bending {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
         let coefficient = |i: usize| four.rest(|bending| bending.coefficients[i]);
-        let bend = (1..4).fold(V4::ZERO, |bend, i| (x[i] - x[0]).mul_add::<FMA>(coefficient(i), bend));
-        let norm = bend.dot::<FMA>(bend).sqrt();
+        let bend = (1..4).fold(V4::zero(four.simd), |bend, i| (x[i] - x[0]).mul_add(coefficient(i), bend));
+        let norm = bend.dot(bend).sqrt();
         let (rest, flat) = (four.rest(|bending| bending.rest_norm), four.rest(|bending| bending.flat_norm));
-        let strain = (norm / rest).max(four.scalar(0)).min(four.scalar(1));
-        let zero = F4::splat(0.0);
-        let factor = norm.where_above(flat, rest * strain / norm, F4::splat(1.0));
+        let [zero, one] = [0.0, 1.0].map(|value| four.splat(value));
+        let moved = norm.max(four.scalar(0) * rest).min(four.scalar(1) * rest);
+        let factor = norm.where_above(flat, moved / norm, one);
         targets[0] = bend * rest.where_above(zero, factor, zero);
-        // Degenerate pairs, and norms whose squares are not normal numbers.
-        std::array::from_fn(|i| !(flat.0[i] > 0.0 && flat.0[i] * flat.0[i] > f64::MIN_POSITIVE && norm.0[i] < f64::MAX))
+        // Not degenerate pairs, nor norms whose squares are not normal numbers.
+        (flat * flat).above(four.splat(f64::MIN_POSITIVE)) & four.splat(f64::MAX).above(norm)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

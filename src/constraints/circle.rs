@@ -11,7 +11,8 @@
 use glam::{DVec2, DVec3};
 
 use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
-use crate::linalg::lanes::{self, F4, V4};
+use crate::linalg::lanes::{self, Mask, V4};
+use crate::linalg::simd::Isa;
 use crate::linalg::small::{scatter, symmetric_eigen};
 
 /// Points whose scatter has `det S` at or below this multiple of `(tr S)²` are on a line within round-off: the center, at more
@@ -97,42 +98,41 @@ impl Constraint for Circle {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(_four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
-        let (diagonal, off) = lanes::scatter::<FMA>(x);
-        let (normal, is_doubtful) = lanes::least_eigenvector::<FMA>(diagonal, off);
-        let (u, v) = lanes::orthogonal_pair::<FMA>(normal);
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(|value| four.splat(value));
+        let (diagonal, off) = lanes::scatter(four.simd, x);
+        let (normal, squared, is_accurate) = lanes::least_eigenvector(diagonal, off);
+        let (u, v) = lanes::orthogonal_pair(normal * (one / squared.sqrt()));
         // The flattened points, then their moments of second and third order.
-        let (one, zero) = (F4::splat(1.0), F4::splat(0.0));
-        let size = one / (diagonal.x + diagonal.y + diagonal.z).sqrt();
+        let size = (diagonal.x + diagonal.y + diagonal.z).sqrt();
+        let per_size = one / size;
         let (mut uu, mut uv, mut vv, mut bu, mut bv) = (zero, zero, zero, zero, zero);
         for (target, &point) in targets.iter_mut().zip(x) {
-            let (a, b) = (point.dot::<FMA>(u) * size, point.dot::<FMA>(v) * size);
-            let square = a.mul_add::<FMA>(a, b * b);
-            (uu, uv, vv) = (a.mul_add::<FMA>(a, uu), a.mul_add::<FMA>(b, uv), b.mul_add::<FMA>(b, vv));
-            (bu, bv) = (a.mul_add::<FMA>(square, bu), b.mul_add::<FMA>(square, bv));
+            let (a, b) = (point.dot(u) * per_size, point.dot(v) * per_size);
+            let square = a.mul_add(a, b * b);
+            (uu, uv, vv) = (a.mul_add(a, uu), a.mul_add(b, uv), b.mul_add(b, vv));
+            (bu, bv) = (a.mul_add(square, bu), b.mul_add(square, bv));
             *target = V4 { x: a, y: b, z: zero };
         }
-        let determinant = uu.mul_add::<FMA>(vv, -(uv * uv));
-        let half = F4::splat(0.5) / determinant;
-        let center_u = half * vv.mul_add::<FMA>(bu, -(uv * bv));
-        let center_v = half * uu.mul_add::<FMA>(bv, -(uv * bu));
-        let squared = center_u.mul_add::<FMA>(center_u, center_v.mul_add::<FMA>(center_v, uu + vv));
-        let spread = (uu + vv) * F4::splat(1.0 - 1.0 / x.len() as f64);
+        let determinant = uu.mul_add(vv, -(uv * uv));
+        let factor = half / determinant;
+        let center_u = factor * vv.mul_add(bu, -(uv * bv));
+        let center_v = factor * uu.mul_add(bv, -(uv * bu));
+        let squared = center_u.mul_add(center_u, center_v.mul_add(center_v, uu + vv));
+        let spread = (uu + vv) * four.splat(1.0 - 1.0 / x.len() as f64);
         let radius = (squared - spread).sqrt();
         let mut least_distance = radius;
         for target in &mut *targets {
             let (a, b) = (target.x - center_u, target.y - center_v);
-            let distance = a.mul_add::<FMA>(a, b * b).sqrt();
+            let distance = a.mul_add(a, b * b).sqrt();
             least_distance = least_distance.min(distance);
             let factor = radius / distance;
-            let (a, b) = (a.mul_add::<FMA>(factor, center_u) / size, b.mul_add::<FMA>(factor, center_v) / size);
-            *target = (u * a).mul_add::<FMA>(one, v * b);
+            let (a, b) = (a.mul_add(factor, center_u) * size, b.mul_add(factor, center_v) * size);
+            *target = u.mul_add(a, v * b);
         }
         // Points at the center have no direction; on flat arcs the center is far away.
-        std::array::from_fn(|i| {
-            let is_flat = !(determinant.0[i] > FLAT_ARC);
-            is_doubtful[i] || is_flat || !(least_distance.0[i] > NEAR_CENTER * radius.0[i])
-        })
+        let [flat_arc, near_center] = [FLAT_ARC, NEAR_CENTER].map(|value| four.splat(value));
+        is_accurate & determinant.above(flat_arc) & least_distance.above(near_center * radius)
     }
 
     fn violation(&self, _scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::{Four, Stencil};
 use crate::linalg::lanes::{F4, V4};
+use crate::linalg::simd::Isa;
 use crate::linalg::small::{Svd, svd};
 
 /// A height below this multiple of the longest edge leaves the rest shape flat within round-off: the difference of two
@@ -61,30 +62,31 @@ impl<const N: usize> RestShape<N> {
 
 /// [`RestShape::gradient`] of four constraints at once; `rest` gives the rest shape of each.
 #[inline(always)]
-pub fn gradient_four<const N: usize, const FMA: bool, T>(
-    four: &Four<'_, T>,
+pub fn gradient_four<const N: usize, S: Isa, T>(
+    four: &Four<'_, T, S>,
     rest: impl Fn(&T) -> &RestShape<N>,
-    x: &[V4],
-) -> [V4; N] {
+    x: &[V4<S>],
+) -> [V4<S>; N] {
     std::array::from_fn(|j| {
-        (0..N).fold(V4::ZERO, |sum, i| {
-            (x[i + 1] - x[0]).mul_add::<FMA>(four.rest(|constraint| rest(constraint).inverse[i][j]), sum)
+        (0..N).fold(V4::zero(four.simd), |sum, i| {
+            (x[i + 1] - x[0]).mul_add(four.rest(|constraint| rest(constraint).inverse[i][j]), sum)
         })
     })
 }
 
 /// [`move_product_into`] for four constraints at once.
 #[inline(always)]
-pub fn move_product_into_four<const N: usize, const FMA: bool>(s: [F4; N], [min, max]: [F4; 2]) -> [F4; N] {
-    let (zero, one) = (F4::splat(0.0), F4::splat(1.0));
+pub fn move_product_into_four<const N: usize, S: Isa>(s: [F4<S>; N], [min, max]: [F4<S>; 2]) -> [F4<S>; N] {
+    let [zero, one] = [0.0, 1.0].map(|value| F4::splat(min.simd(), value));
     let mut d = [zero; N];
     let mut moved = s;
     for _ in 0..LINEARISED_STEPS {
         let product = moved.iter().fold(one, |product, &s| product * s);
         let f = product - product.max(min).min(max);
-        let g: [F4; N] = std::array::from_fn(|i| (0..N).filter(|&j| j != i).fold(one, |product, j| product * moved[j]));
-        let along = (0..N).fold(zero, |sum, i| g[i].mul_add::<FMA>(d[i], sum));
-        let squared = g.iter().fold(zero, |sum, &g| g.mul_add::<FMA>(g, sum));
+        let g: [F4<S>; N] =
+            std::array::from_fn(|i| (0..N).filter(|&j| j != i).fold(one, |product, j| product * moved[j]));
+        let along = (0..N).fold(zero, |sum, i| g[i].mul_add(d[i], sum));
+        let squared = g.iter().fold(zero, |sum, &g| g.mul_add(g, sum));
         let factor = squared.where_above(zero, (along - f) / squared, zero);
         for i in 0..N {
             d[i] = factor * g[i];

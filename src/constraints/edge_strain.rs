@@ -10,7 +10,8 @@ use glam::DVec3;
 
 use super::{Constraint, Four, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo, check_positive, check_range};
 use crate::error::Result;
-use crate::linalg::lanes::V4;
+use crate::linalg::lanes::{Mask, V4};
+use crate::linalg::simd::Isa;
 
 /// One EdgeStrain constraint.
 #[derive(Clone, Debug)]
@@ -76,14 +77,17 @@ impl Constraint for EdgeStrain {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
         let [length, range_min, range_max] = [0, 1, 2].map(|i| four.scalar(i));
         let edge = x[1] - x[0];
-        let squared = edge.dot::<FMA>(edge);
+        let squared = edge.dot(edge);
         let current = squared.sqrt();
-        targets[0] = edge * ((current / length).max(range_min).min(range_max) / current);
-        // Edges without a length, or with one whose square is not a normal number.
-        std::array::from_fn(|i| !(length.0[i] > 0.0 && squared.0[i] > f64::MIN_POSITIVE && squared.0[i] < f64::MAX))
+        let scale = length * current;
+        let factor = current.max(range_min * length).min(range_max * length) / scale;
+        targets[0] = edge * factor;
+        // Not edges without a length, nor numbers too small to keep all digits, nor infinite ones.
+        let [least, greatest] = [f64::MIN_POSITIVE, f64::MAX].map(|value| four.splat(value));
+        squared.min(scale).above(least) & greatest.above(squared.max(scale).max(factor))
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::error::Status;
 use crate::linalg::lanes::V4;
-use crate::linalg::simd::{Kernel, dispatch};
+use crate::linalg::simd::{Isa, LaneKernel, Portable, dispatch_lanes};
 
 /// Samples per law and type.
 const SAMPLES: u64 = 300;
@@ -357,23 +357,25 @@ fn project_four<T: Constraint>(
     is_portable: bool,
 ) -> [Option<Vec<DVec3>>; 4] {
     struct InLanes<'a, T>(&'a [Sample<T>; 4], &'a [Vec<DVec3>; 4]);
-    impl<T: Constraint> Kernel for InLanes<'_, T> {
+    impl<T: Constraint> LaneKernel for InLanes<'_, T> {
         type Output = [Option<Vec<DVec3>>; 4];
 
-        fn run<const FMA: bool>(self) -> Self::Output {
+        fn run<S: Isa>(self, simd: S) -> Self::Output {
             let Self(samples, x) = self;
             let stencils: [Stencil<'_>; 4] = std::array::from_fn(|i| stencil(T::INFO.rows, &x[i], &samples[i].indices));
-            let lanes: Vec<V4> = (0..x[0].len()).map(|j| V4::gather(stencils.map(|stencil| stencil.at(j)))).collect();
-            let mut targets = vec![V4::gather([DVec3::NAN; 4]); samples[0].row_count()];
+            let lanes: Vec<V4<S>> =
+                (0..x[0].len()).map(|j| V4::gather(simd, stencils.map(|stencil| stencil.at(j)).each_ref())).collect();
+            let mut targets = vec![V4::gather(simd, [&DVec3::NAN; 4]); samples[0].row_count()];
             let four = Four::new(
+                simd,
                 std::array::from_fn(|i| &samples[i].constraint),
                 std::array::from_fn(|i| samples[i].scalars.as_slice()),
             );
-            let is_left = T::project_four::<FMA>(four, &lanes, &mut targets);
-            std::array::from_fn(|i| (!is_left[i]).then(|| targets.iter().map(|target| target.lane(i)).collect()))
+            let is_done = T::project_four(four, &lanes, &mut targets);
+            std::array::from_fn(|i| is_done.has(i).then(|| targets.iter().map(|target| target.to_array()[i]).collect()))
         }
     }
-    if is_portable { InLanes(samples, x).run::<false>() } else { dispatch(InLanes(samples, x)) }
+    if is_portable { InLanes(samples, x).run(Portable) } else { dispatch_lanes(InLanes(samples, x)) }
 }
 
 #[test]

@@ -22,7 +22,8 @@ pub use set::{ConstraintId, ConstraintSet, ConstraintView, Edited, NewConstraint
 pub use stencil::Stencil;
 
 use crate::error::{Error, Result, Status};
-use crate::linalg::lanes::V4;
+use crate::linalg::lanes::{Mask, V4};
+use crate::linalg::simd::Isa;
 use batch::TypedBatch;
 
 /// The rows `A` of a type.
@@ -136,11 +137,11 @@ pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
     }
 
     /// The fast twin of [`Self::project`], for four constraints of `k` points at once: writes the projections of the points
-    /// `x` (`k` entries) into `targets` (one entry per row), and returns for which of the four `project` must do it, because
-    /// the fast way is not accurate there. The same results within round-off.
+    /// `x` (`k` entries) into `targets` (one entry per row), and returns which of the four are done: where the fast way is
+    /// not accurate, `project` must do it. The same results within round-off.
     #[inline(always)]
-    fn project_four<const FMA: bool>(_four: Four<'_, Self>, _x: &[V4], _targets: &mut [V4]) -> [bool; 4] {
-        [true; 4]
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, _x: &[V4<S>], _targets: &mut [V4<S>]) -> Mask<S> {
+        Mask::none(four.simd)
     }
 
     /// False where the targets of a centred type can have a mean other than 0.

@@ -9,7 +9,8 @@
 use glam::DVec3;
 
 use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
-use crate::linalg::lanes::{self, F4, V4};
+use crate::linalg::lanes::{self, Mask, V4};
+use crate::linalg::simd::Isa;
 use crate::linalg::small::{least_eigenvector, scatter};
 
 /// One Parallelogram constraint; it has no rest state.
@@ -51,17 +52,13 @@ impl Constraint for Parallelogram {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(_four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
-        let (diagonal, off) = lanes::scatter::<FMA>(x);
-        let (normal, is_doubtful) = lanes::least_eigenvector::<FMA>(diagonal, off);
-        for (target, &point) in targets.iter_mut().zip(x) {
-            *target = normal.mul_add::<FMA>(-point.dot::<FMA>(normal), point);
-        }
-        let gap = (targets[0] - targets[1] + targets[2] - targets[3]) * F4::splat(0.25);
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
+        let is_accurate = lanes::flatten(four.simd, x, targets);
+        let gap = (targets[0] - targets[1] + targets[2] - targets[3]) * four.splat(0.25);
         for (i, target) in targets.iter_mut().enumerate() {
             *target = if i % 2 == 0 { *target - gap } else { *target + gap };
         }
-        is_doubtful
+        is_accurate
     }
 
     fn violation(&self, _scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -8,7 +8,8 @@
 use glam::DVec3;
 
 use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
-use crate::linalg::lanes::{self, V4};
+use crate::linalg::lanes::{self, Mask, V4};
+use crate::linalg::simd::Isa;
 use crate::linalg::small::{least_eigenvector, scatter};
 
 /// One Plane constraint; it has no rest state.
@@ -46,13 +47,8 @@ impl Constraint for Plane {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(_four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
-        let (diagonal, off) = lanes::scatter::<FMA>(x);
-        let (normal, is_doubtful) = lanes::least_eigenvector::<FMA>(diagonal, off);
-        for (target, &point) in targets.iter_mut().zip(x) {
-            *target = normal.mul_add::<FMA>(-point.dot::<FMA>(normal), point);
-        }
-        is_doubtful
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
+        lanes::flatten(four.simd, x, targets)
     }
 
     fn violation(&self, _scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -15,7 +15,8 @@
 use glam::{DVec2, DVec3};
 
 use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
-use crate::linalg::lanes::{self, F4, V4};
+use crate::linalg::lanes::{self, F4, Mask, V4};
+use crate::linalg::simd::Isa;
 use crate::linalg::small::{scatter, symmetric_eigen};
 
 /// How much better one direction of the sides must fit than the one at a half right angle to it, relative to the size squared.
@@ -71,12 +72,12 @@ impl Constraint for Rectangle {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(_four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
-        let (zero, half, one) = (F4::splat(0.0), F4::splat(0.5), F4::splat(1.0));
-        let (diagonal, off) = lanes::scatter::<FMA>(x);
-        let (normal, is_doubtful) = lanes::least_eigenvector::<FMA>(diagonal, off);
-        let (u, v) = lanes::orthogonal_pair::<FMA>(normal);
-        let corners: [[F4; 2]; 4] = std::array::from_fn(|i| [x[i].dot::<FMA>(u), x[i].dot::<FMA>(v)]);
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
+        let [zero, half, one] = [0.0, 0.5, 1.0].map(|value| four.splat(value));
+        let (diagonal, off) = lanes::scatter(four.simd, x);
+        let (normal, squared, is_accurate) = lanes::least_eigenvector(diagonal, off);
+        let (u, v) = lanes::orthogonal_pair(normal * (one / squared.sqrt()));
+        let corners: [[F4<S>; 2]; 4] = std::array::from_fn(|i| [x[i].dot(u), x[i].dot(v)]);
         // Those of the sides 12 and 30 are turned by a right angle.
         let side = |i: usize| {
             let [a, b] = [0, 1].map(|axis| corners[(i + 1) % 4][axis] - corners[i][axis]);
@@ -84,29 +85,29 @@ impl Constraint for Rectangle {
         };
         let (mut difference, mut double) = (zero, zero);
         for [a, b] in [side(0), side(1), side(2), side(3)] {
-            difference = difference + a.mul_add::<FMA>(a, -(b * b));
+            difference = difference + a.mul_add(a, -(b * b));
             double = double + (a + a) * b;
         }
         // The direction at half the angle of (difference, double), from whichever of its parts is the larger.
-        let size = difference.mul_add::<FMA>(difference, double * double).sqrt();
+        let size = difference.mul_add(difference, double * double).sqrt();
         let cosine = difference / size;
         let large = (half + half * cosine.abs()).sqrt();
         let small = half * (double / size) / large;
         let (along_u, along_v) = (cosine.where_above(zero, large, small), cosine.where_above(zero, small, large));
         let (n, m) = ([-along_v, along_u], [-along_u, -along_v]);
-        let middle = |direction: [F4; 2], i: usize, j: usize| {
+        let middle = |direction: [F4<S>; 2], i: usize, j: usize| {
             let sum = [0, 1].map(|axis| corners[i][axis] + corners[j][axis]);
-            half * sum[0].mul_add::<FMA>(direction[0], sum[1] * direction[1])
+            half * sum[0].mul_add(direction[0], sum[1] * direction[1])
         };
         let along_n = [middle(n, 0, 1), middle(n, 2, 3)];
         let along_m = [middle(m, 1, 2), middle(m, 3, 0)];
         for (target, (i, j)) in targets.iter_mut().zip([(0, 1), (0, 0), (1, 0), (1, 1)]) {
-            let [a, b] = [0, 1].map(|axis| along_n[i].mul_add::<FMA>(n[axis], along_m[j] * m[axis]));
-            *target = (u * a).mul_add::<FMA>(one, v * b);
+            let [a, b] = [0, 1].map(|axis| along_n[i].mul_add(n[axis], along_m[j] * m[axis]));
+            *target = u.mul_add(a, v * b);
         }
         // Where the sides fit one direction as well as another, round-off decides.
         let spread = diagonal.x + diagonal.y + diagonal.z;
-        std::array::from_fn(|i| is_doubtful[i] || !(size.0[i] > LEAST_PREFERENCE * spread.0[i]))
+        is_accurate & size.above(four.splat(LEAST_PREFERENCE) * spread)
     }
 
     fn violation(&self, _scalars: &[f64], x: Stencil<'_>) -> f64 {

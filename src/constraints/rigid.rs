@@ -10,7 +10,8 @@ use glam::DVec3;
 
 use super::shape_fit::{self, Scale};
 use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
-use crate::linalg::lanes::V4;
+use crate::linalg::lanes::{Mask, V4};
+use crate::linalg::simd::Isa;
 
 /// One Rigid constraint. Its templates are its scalars; it keeps what is known of them.
 #[derive(Clone, Debug)]
@@ -51,10 +52,10 @@ impl Constraint for Rigid {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
         let radius = four.rest(|shape| shape.polygon_radius);
-        let is_left = shape_fit::project_regular_four::<FMA>(x, Some(radius), targets);
-        std::array::from_fn(|i| radius.0[i] == 0.0 || is_left[i])
+        let is_accurate = shape_fit::project_regular_four(four.simd, x, Some(radius), targets);
+        is_accurate & radius.above(four.splat(0.0))
     }
 
     fn project(&self, scalars: &[f64], x: Stencil<'_>, targets: &mut [DVec3]) {

@@ -9,7 +9,8 @@
 use glam::{DMat3, DVec3};
 
 use super::Stencil;
-use crate::linalg::lanes::{F4, V4};
+use crate::linalg::lanes::{F4, Mask, V4};
+use crate::linalg::simd::Isa;
 use crate::linalg::small::nearest_rotation;
 
 /// Whether the template may be scaled.
@@ -149,39 +150,40 @@ fn corner_turn(k: usize) -> (f64, f64) {
 const LEAST_ROUNDNESS: f64 = 1e-3;
 
 /// Four regular polygons of `x.len()` corners (3 to 8), of any size if `radius` is none, nearest to the points `x` about their
-/// means; and which of the four the closed form is not accurate for.
+/// means; and for which of the four the closed form is accurate.
 ///
 /// With `p = Σ x_j cos(2πj/k)`, `q = Σ x_j sin(2πj/k)` and `M = [p q]`, the best orthonormal pair of axes is the polar factor
 /// `M (MᵀM)^(−½)`. The root of the 2×2 matrix `G = MᵀM` is `(G + s I)/t` with `s = √det G` and `t = √(tr G + 2s)`. As `t` is the sum
 /// of the singular values of `M`, and a unit polygon's squared norm is `k`, the best radius is `t/k`.
 #[inline(always)]
-pub fn project_regular_four<const FMA: bool>(x: &[V4], radius: Option<F4>, targets: &mut [V4]) -> [bool; 4] {
+pub fn project_regular_four<S: Isa>(simd: S, x: &[V4<S>], radius: Option<F4<S>>, targets: &mut [V4<S>]) -> Mask<S> {
+    let number = |value| F4::splat(simd, value);
     let k = x.len();
     let (step_cos, step_sin) = corner_turn(k);
     let next = |(cos, sin): (f64, f64)| (cos * step_cos - sin * step_sin, sin * step_cos + cos * step_sin);
-    let (mut p, mut q, mut turn) = (V4::ZERO, V4::ZERO, (1.0, 0.0));
+    let (mut p, mut q, mut turn) = (V4::zero(simd), V4::zero(simd), (1.0, 0.0));
     for &point in x {
-        p = point.mul_add::<FMA>(F4::splat(turn.0), p);
-        q = point.mul_add::<FMA>(F4::splat(turn.1), q);
+        p = point.mul_add(number(turn.0), p);
+        q = point.mul_add(number(turn.1), q);
         turn = next(turn);
     }
-    let (pp, pq, qq) = (p.dot::<FMA>(p), p.dot::<FMA>(q), q.dot::<FMA>(q));
-    let determinant = pp.mul_add::<FMA>(qq, -(pq * pq));
-    let s = determinant.max(F4::splat(0.0)).sqrt();
+    let (pp, pq, qq) = (p.dot(p), p.dot(q), q.dot(q));
+    let determinant = pp.mul_add(qq, -(pq * pq));
+    let s = determinant.max(number(0.0)).sqrt();
     let t = (pp + qq + s + s).sqrt();
     // (G + s I)⁻¹ t, its own determinant being s t².
-    let factor = F4::splat(1.0) / (s * t);
+    let factor = number(1.0) / (s * t);
     let (a, b, d) = ((qq + s) * factor, -(pq * factor), (pp + s) * factor);
-    let u = (p * a).mul_add::<FMA>(F4::splat(1.0), q * b);
-    let v = (p * b).mul_add::<FMA>(F4::splat(1.0), q * d);
-    let radius = radius.unwrap_or(t * F4::splat(1.0 / k as f64));
+    let u = p.mul_add(a, q * b);
+    let v = p.mul_add(b, q * d);
+    let radius = radius.unwrap_or(t * number(1.0 / k as f64));
     let (u, v) = (u * radius, v * radius);
     turn = (1.0, 0.0);
     for target in targets {
-        *target = u.mul_add::<FMA>(F4::splat(turn.0), v * F4::splat(turn.1));
+        *target = u.mul_add(number(turn.0), v * number(turn.1));
         turn = next(turn);
     }
-    std::array::from_fn(|i| !(s.0[i] > LEAST_ROUNDNESS * (pp.0[i] + qq.0[i])))
+    s.above(number(LEAST_ROUNDNESS) * (pp + qq))
 }
 
 /// True if every template has shrunk to a point.

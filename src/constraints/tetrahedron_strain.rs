@@ -14,7 +14,8 @@ use glam::DVec3;
 use super::deformation::{RestShape, gradient_four, orientation, recompose, strain_violation};
 use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
-use crate::linalg::lanes::{self, V4};
+use crate::linalg::lanes::{self, Mask, V4};
+use crate::linalg::simd::Isa;
 
 /// One TetrahedronStrain constraint: its rest shape.
 #[derive(Clone, Debug)]
@@ -64,12 +65,12 @@ impl Constraint for TetrahedronStrain {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
-        let gradient = gradient_four::<3, FMA, _>(&four, |tetrahedron| &tetrahedron.0, x);
-        let svd = lanes::svd::<3, FMA>(gradient);
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
+        let gradient = gradient_four::<3, _, _>(&four, |tetrahedron| &tetrahedron.0, x);
+        let svd = lanes::svd(four.simd, gradient);
         let (min, max) = (four.scalar(0), four.scalar(1));
-        let s = svd.turn_inside_out::<FMA>(gradient, svd.s.map(|s| s.max(min).min(max)));
-        svd.recompose::<FMA>(s, targets)
+        let s = svd.turn_inside_out(gradient, svd.s.map(|s| s.max(min).min(max)));
+        svd.recompose(s, targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

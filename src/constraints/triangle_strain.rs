@@ -11,7 +11,8 @@ use glam::DVec3;
 use super::deformation::{RestShape, gradient_four, recompose, strain_violation};
 use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
-use crate::linalg::lanes::{self, V4};
+use crate::linalg::lanes::{self, Mask, V4};
+use crate::linalg::simd::Isa;
 
 /// One TriangleStrain constraint: its rest shape.
 #[derive(Clone, Debug)]
@@ -59,10 +60,10 @@ impl Constraint for TriangleStrain {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
-        let svd = lanes::svd::<2, FMA>(gradient_four::<2, FMA, _>(&four, |triangle| &triangle.0, x));
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
+        let svd = lanes::svd(four.simd, gradient_four::<2, _, _>(&four, |triangle| &triangle.0, x));
         let (min, max) = (four.scalar(0), four.scalar(1));
-        svd.recompose::<FMA>(svd.s.map(|s| s.max(min).min(max)), targets)
+        svd.recompose(svd.s.map(|s| s.max(min).min(max)), targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -15,7 +15,8 @@ use super::deformation::{
 };
 use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
-use crate::linalg::lanes::{self, V4};
+use crate::linalg::lanes::{self, Mask, V4};
+use crate::linalg::simd::Isa;
 
 /// One Volume constraint: its rest shape.
 #[derive(Clone, Debug)]
@@ -65,11 +66,11 @@ impl Constraint for Volume {
     }
 
     #[inline(always)]
-    fn project_four<const FMA: bool>(four: Four<'_, Self>, x: &[V4], targets: &mut [V4]) -> [bool; 4] {
-        let gradient = gradient_four::<3, FMA, _>(&four, |tetrahedron| &tetrahedron.0, x);
-        let svd = lanes::svd::<3, FMA>(gradient);
-        let s = move_product_into_four::<3, FMA>(svd.s, [four.scalar(0), four.scalar(1)]);
-        svd.recompose::<FMA>(svd.turn_inside_out::<FMA>(gradient, s), targets)
+    fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
+        let gradient = gradient_four::<3, _, _>(&four, |tetrahedron| &tetrahedron.0, x);
+        let svd = lanes::svd(four.simd, gradient);
+        let s = move_product_into_four(svd.s, [four.scalar(0), four.scalar(1)]);
+        svd.recompose(svd.turn_inside_out(gradient, s), targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {
