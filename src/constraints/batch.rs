@@ -1,16 +1,18 @@
 //! All constraints of one type in flat arrays.
 
+use std::any::Any;
 use std::ops::Range;
 
 use glam::DVec3;
 
+use super::deformation::{Deformation, gradient_four};
 use super::{Constraint, Rows, Scalars, Stencil, TypeInfo};
-use crate::linalg::lanes::{F4, Mask, V4};
+use crate::linalg::lanes::{self, F4, Mask, V4};
 use crate::linalg::simd::{Isa, LaneKernel, dispatch_lanes};
 
 /// All constraints of one type. A *slot* is a constraint's place in the batch; removing constraints moves the later ones
 /// down, so slots change where ids do not.
-pub(crate) trait Batch: Send + Sync {
+pub(crate) trait Batch: Any + Send + Sync {
     /// What is known of the type.
     fn info(&self) -> &'static TypeInfo;
 
@@ -383,18 +385,105 @@ impl<T: Constraint> LaneKernel for Project<'_, T> {
         let mut slot = slots.start;
         while slot < slots.end {
             let k = batch.indices.get(slot).len();
+            let targets = &mut targets[batch.target_offset(slot) - first..];
             let mut is_done = None;
             if slot + 4 <= slots.end && T::takes_four(k) {
-                is_done = batch.project_four(simd, slot, k, points, &mut targets[batch.target_offset(slot) - first..]);
+                is_done = batch.project_four(simd, slot, k, points, targets);
             }
             let count = if is_done.is_some() { 4 } else { 1 };
-            if !is_done.is_some_and(Mask::all) {
-                for i in (slot..slot + count).filter(|i| !is_done.is_some_and(|is_done| is_done.has(i - slot))) {
-                    let (start, end) = (batch.target_offset(i) - first, batch.target_offset(i + 1) - first);
-                    batch.rest[i].project(batch.scalars.get(i), batch.stencil(i, points), &mut targets[start..end]);
-                }
-            }
+            batch.project_rest(slot..slot + count, is_done, points, targets);
             slot += count;
+        }
+    }
+}
+
+/// Four constraints and their points.
+type FourAt<'a, T, S, const K: usize> = (Four<'a, T, S>, [V4<S>; K]);
+
+/// How two batches are projected together: slots, points, and the targets of each.
+pub(crate) type ProjectPair = fn([&dyn Batch; 2], Range<usize>, &[DVec3], [&mut [DVec3]; 2]);
+
+/// Two types that can be projected together.
+pub(super) struct Pair {
+    /// True if two batches are of these types, on the same points and shapes.
+    pub(super) is_of: fn(&dyn Batch, &dyn Batch) -> bool,
+    pub(super) project: ProjectPair,
+}
+
+/// Two types that share a decomposition; `K` is `N + 1`, the number of points.
+pub(super) const fn pair<const N: usize, const K: usize, A: Deformation<N>, B: Deformation<N>>() -> Pair {
+    Pair {
+        is_of: |a, b| {
+            let Some((a, b)) = both::<A, B>(a, b) else { return false };
+            let has_shapes_of_other = || a.rest.iter().zip(&b.rest).all(|(a, b)| a.rest_shape() == b.rest_shape());
+            // Neither list of indices has gaps: indices are never replaced.
+            !a.rest.is_empty() && a.indices.values == b.indices.values && has_shapes_of_other()
+        },
+        project: |[a, b], slots, points, targets| {
+            if let Some((a, b)) = both::<A, B>(a, b) {
+                dispatch_lanes(ProjectPairOf::<N, K, A, B> { a, b, slots, points, targets });
+            }
+        },
+    }
+}
+
+fn both<'a, A: Constraint, B: Constraint>(
+    a: &'a dyn Batch,
+    b: &'a dyn Batch,
+) -> Option<(&'a TypedBatch<A>, &'a TypedBatch<B>)> {
+    Some(((a as &dyn Any).downcast_ref()?, (b as &dyn Any).downcast_ref()?))
+}
+
+/// The projection of some slots of two batches on the same points and shapes.
+struct ProjectPairOf<'a, const N: usize, const K: usize, A, B> {
+    a: &'a TypedBatch<A>,
+    b: &'a TypedBatch<B>,
+    slots: Range<usize>,
+    points: &'a [DVec3],
+    targets: [&'a mut [DVec3]; 2],
+}
+
+impl<const N: usize, const K: usize, A: Deformation<N>, B: Deformation<N>> LaneKernel
+    for ProjectPairOf<'_, N, K, A, B>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Isa>(self, simd: S) {
+        let Self { a, b, slots, points, targets: [a_targets, b_targets] } = self;
+        let mut slot = slots.start;
+        while slot < slots.end {
+            let start = N * (slot - slots.start);
+            let (a_targets, b_targets) = (&mut a_targets[start..], &mut b_targets[start..]);
+            let (mut count, mut are_done) = (1, [None; 2]);
+            if slot + 4 <= slots.end
+                && let Some((a_four, x)) = a.four::<K, S>(simd, slot, points)
+                && let Some((b_four, _)) = b.four::<K, S>(simd, slot, points)
+            {
+                let gradient = gradient_four(&a_four, &x);
+                let svd = lanes::svd(simd, gradient);
+                let mut own = [V4::zero(simd); N];
+                let is_a_done = A::project_decomposed(a_four, gradient, &svd, &mut own);
+                write_four(&own, a_targets);
+                let is_b_done = B::project_decomposed(b_four, gradient, &svd, &mut own);
+                write_four(&own, b_targets);
+                (count, are_done) = (4, [Some(is_a_done), Some(is_b_done)]);
+            }
+            a.project_rest(slot..slot + count, are_done[0], points, a_targets);
+            b.project_rest(slot..slot + count, are_done[1], points, b_targets);
+            slot += count;
+        }
+    }
+}
+
+/// Writes the targets of four constraints, one after the other.
+#[inline(always)]
+fn write_four<S: Isa>(four_targets: &[V4<S>], targets: &mut [DVec3]) {
+    let rows = four_targets.len();
+    let targets = &mut targets[..4 * rows];
+    for (row, four) in four_targets.iter().enumerate() {
+        for (i, target) in four.to_array().into_iter().enumerate() {
+            targets[i * rows + row] = target;
         }
     }
 }
@@ -440,6 +529,26 @@ impl<T: Constraint> TypedBatch<T> {
         points: &[DVec3],
         targets: &mut [DVec3],
     ) -> Option<Mask<S>> {
+        let (four, x) = self.four::<K, S>(simd, slot, points)?;
+        let rows = match T::INFO.rows {
+            Rows::Centred => K,
+            Rows::Linear(rows) => rows,
+        };
+        // A type has at most as many rows as points.
+        let mut four_targets = [V4::zero(simd); K];
+        let is_done = T::project_four(four, &x, &mut four_targets[..rows]);
+        write_four(&four_targets[..rows], targets);
+        Some(is_done)
+    }
+
+    /// The constraints of four slots and their points, if they are of `K` points each.
+    #[inline(always)]
+    fn four<'a, const K: usize, S: Isa>(
+        &'a self,
+        simd: S,
+        slot: usize,
+        points: &[DVec3],
+    ) -> Option<FourAt<'a, T, S, K>> {
         let indices = self.indices.four_of(K, slot)?;
         let scalars = match T::INFO.scalars {
             // So that no access needs a check.
@@ -451,10 +560,6 @@ impl<T: Constraint> TypedBatch<T> {
         // All indices are checked before the first point is read: the numbers then go straight into vector registers.
         let points: [[&DVec3; 4]; K] = std::array::from_fn(|j| indices.map(|indices| &points[indices[j] as usize]));
         let mut x = points.map(|points| V4::gather(simd, points));
-        let rows = match T::INFO.rows {
-            Rows::Centred => K,
-            Rows::Linear(rows) => rows,
-        };
         if T::INFO.rows == Rows::Centred {
             // Summed relative to the first point: far from the origin the mean keeps the digits that differences have.
             let first = x[0];
@@ -462,15 +567,25 @@ impl<T: Constraint> TypedBatch<T> {
             let mean = first + sum * F4::splat(simd, 1.0 / K as f64);
             x.iter_mut().for_each(|x| *x = *x - mean);
         }
-        // A type has at most as many rows as points.
-        let mut four_targets = [V4::zero(simd); K];
-        let is_done = T::project_four(four, &x, &mut four_targets[..rows]);
-        let targets = &mut targets[..4 * rows];
-        for (row, four) in four_targets[..rows].iter().enumerate() {
-            for (i, target) in four.to_array().into_iter().enumerate() {
-                targets[i * rows + row] = target;
-            }
+        Some((four, x))
+    }
+
+    /// Projects the plain way what is not done of `slots`, whose first target is the first of `targets`.
+    #[inline(always)]
+    fn project_rest<S: Isa>(
+        &self,
+        slots: Range<usize>,
+        is_done: Option<Mask<S>>,
+        points: &[DVec3],
+        targets: &mut [DVec3],
+    ) {
+        if is_done.is_some_and(Mask::all) {
+            return;
         }
-        Some(is_done)
+        let first = self.target_offset(slots.start);
+        for i in slots.clone().filter(|i| !is_done.is_some_and(|is_done| is_done.has(i - slots.start))) {
+            let (start, end) = (self.target_offset(i) - first, self.target_offset(i + 1) - first);
+            self.rest[i].project(self.scalars.get(i), self.stencil(i, points), &mut targets[start..end]);
+        }
     }
 }

@@ -6,8 +6,8 @@
 
 use glam::DVec3;
 
-use super::{Four, Stencil};
-use crate::linalg::lanes::{F4, V4};
+use super::{Constraint, Four, Stencil};
+use crate::linalg::lanes::{self, F4, Mask, Svd4, V4};
 use crate::linalg::simd::Isa;
 use crate::linalg::small::{Svd, svd};
 
@@ -16,7 +16,7 @@ use crate::linalg::small::{Svd, svd};
 const FLAT: f64 = 1e-12;
 
 /// The rest shape of a triangle (`N = 2`) or tetrahedron (`N = 3`).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestShape<const N: usize> {
     /// `R⁻¹` by rows: row `i` belongs to point `i + 1`. Zero for a degenerate shape, which therefore has zero rows.
     inverse: [[f64; N]; N],
@@ -60,18 +60,44 @@ impl<const N: usize> RestShape<N> {
     }
 }
 
-/// [`RestShape::gradient`] of four constraints at once; `rest` gives the rest shape of each.
+/// A type that acts on the singular values of a deformation gradient alone. Two of them on the same shapes share the
+/// decomposition, which is most of the work.
+pub trait Deformation<const N: usize>: Constraint {
+    /// The rest shape.
+    fn rest_shape(&self) -> &RestShape<N>;
+
+    /// [`Constraint::project_four`] from the gradients and their decompositions.
+    fn project_decomposed<S: Isa>(
+        four: Four<'_, Self, S>,
+        gradient: [V4<S>; N],
+        svd: &Svd4<N, S>,
+        targets: &mut [V4<S>],
+    ) -> Mask<S>;
+}
+
+/// [`Constraint::project_four`] of these types.
 #[inline(always)]
-pub fn gradient_four<const N: usize, S: Isa, T>(
-    four: &Four<'_, T, S>,
-    rest: impl Fn(&T) -> &RestShape<N>,
+pub fn project_four<const N: usize, T: Deformation<N>, S: Isa>(
+    four: Four<'_, T, S>,
     x: &[V4<S>],
-) -> [V4<S>; N] {
-    std::array::from_fn(|j| {
-        (0..N).fold(V4::zero(four.simd), |sum, i| {
-            (x[i + 1] - x[0]).mul_add(four.rest(|constraint| rest(constraint).inverse[i][j]), sum)
-        })
-    })
+    targets: &mut [V4<S>],
+) -> Mask<S> {
+    let gradient = gradient_four(&four, x);
+    let svd = lanes::svd(four.simd, gradient);
+    T::project_decomposed(four, gradient, &svd, targets)
+}
+
+/// [`RestShape::gradient`] of four constraints at once.
+#[inline(always)]
+pub fn gradient_four<const N: usize, T: Deformation<N>, S: Isa>(four: &Four<'_, T, S>, x: &[V4<S>]) -> [V4<S>; N] {
+    let mut gradient = [V4::zero(four.simd); N];
+    for (j, column) in gradient.iter_mut().enumerate() {
+        for i in 0..N {
+            let coefficient = four.rest(|constraint| constraint.rest_shape().inverse[i][j]);
+            *column = (x[i + 1] - x[0]).mul_add(coefficient, *column);
+        }
+    }
+    gradient
 }
 
 /// [`move_product_into`] for four constraints at once.

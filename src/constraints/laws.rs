@@ -472,3 +472,56 @@ fn wrong_scalars_are_refused_and_change_nothing() {
     }
     for_each_type!(law);
 }
+
+/// A set with constraints of two types, each on shapes of `k` points.
+fn on_shapes(each: [(&str, &[DVec3], &[u32]); 2], k: usize) -> ConstraintSet {
+    let mut set = ConstraintSet::default();
+    for (type_name, rest, indices) in each {
+        let (counts, scalars) = (vec![k; indices.len() / k], [0.9, 1.05]);
+        let new = NewConstraints {
+            type_name,
+            indices,
+            counts: &counts,
+            weights: &[1.0],
+            scalars: &scalars,
+            scalar_counts: &[2],
+        };
+        set.add(rest, new, |i| i.to_string()).unwrap();
+    }
+    set
+}
+
+#[test]
+fn types_on_the_same_shapes_are_projected_together_as_each_alone() {
+    let mut stream = Stream(11);
+    for (types, k) in [(["TriangleStrain", "Area"], 3), (["TetrahedronStrain", "Volume"], 4)] {
+        // Two fours and three more; one shape is flat at rest, one collapses.
+        let rest = {
+            let mut rest = stream.vectors(11 * k);
+            rest[2] = rest[1];
+            rest
+        };
+        let indices: Vec<u32> = (0..rest.len() as u32).collect();
+        let set = on_shapes(types.map(|name| (name, &rest[..], &indices[..])), k);
+        let mut x: Vec<DVec3> = rest.iter().map(|point| *point + 0.3 * stream.vector()).collect();
+        x[6 * k + 1] = x[6 * k];
+        let pairs: Vec<_> = set.pairs().collect();
+        let [(both, project)] = pairs.as_slice() else { panic!("{types:?}: {} pairs", pairs.len()) };
+        let batches = both.map(|index| set.batch(index));
+        assert_eq!(batches.map(|batch| batch.info().name), types);
+        let alone = batches.map(|batch| {
+            let mut targets = vec![DVec3::NAN; batch.target_offset(11)];
+            batch.project(0..11, &x, &mut targets);
+            targets
+        });
+        let [mut first, mut second] = alone.clone().map(|targets| vec![DVec3::NAN; targets.len()]);
+        project(batches, 0..11, &x, [&mut first, &mut second]);
+        assert!([first, second] == alone, "{types:?}");
+        // Not where the points or the shapes are others.
+        let others: Vec<u32> = indices.iter().rev().copied().collect();
+        for (other_rest, other_indices) in [(&rest, &others), (&x, &indices)] {
+            let set = on_shapes([(types[0], &rest, &indices), (types[1], other_rest, other_indices)], k);
+            assert_eq!(set.pairs().count(), 0, "{types:?}");
+        }
+    }
+}

@@ -16,15 +16,15 @@ mod set;
 mod shape_fit;
 mod stencil;
 
-pub(crate) use batch::Batch;
 pub use batch::Four;
+pub(crate) use batch::{Batch, ProjectPair};
 pub use set::{ConstraintId, ConstraintSet, ConstraintView, Edited, NewConstraints};
 pub use stencil::Stencil;
 
 use crate::error::{Error, Result, Status};
 use crate::linalg::lanes::{Mask, V4};
 use crate::linalg::simd::Isa;
-use batch::TypedBatch;
+use batch::{Pair, TypedBatch, pair};
 
 /// The rows `A` of a type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -290,6 +290,12 @@ registry! {
     laplacian_displacement::LaplacianDisplacement,
     angle::Angle,
 }
+
+/// Types that are projected together where they are on the same points, in the order of the registry.
+static PAIRS: [Pair; 2] = [
+    pair::<2, 3, triangle_strain::TriangleStrain, area::Area>(),
+    pair::<3, 4, tetrahedron_strain::TetrahedronStrain, volume::Volume>(),
+];
 
 /// The scalars of the types that bound a ratio to the rest state; [`check_range`] holds them to their domain.
 const RANGE: [Scalar; 2] =

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Batch, REGISTRY, TypeIndex, TypeInfo};
+use super::{Batch, PAIRS, ProjectPair, REGISTRY, TypeIndex, TypeInfo};
 use crate::error::{Error, Result, Status, finite};
 
 /// The number of a constraint: they count up from 0 and are never reused.
@@ -268,6 +268,16 @@ impl ConstraintSet {
     /// The batch of the type with this index.
     pub(crate) fn batch(&self, type_index: usize) -> &dyn Batch {
         &*self.groups[type_index].batch
+    }
+
+    /// The batches, by the indices of their types, that can be projected together, and how.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = ([usize; 2], ProjectPair)> {
+        PAIRS.iter().filter_map(|pair| {
+            let indices = 0..self.groups.len();
+            let both = indices.clone().flat_map(|a| indices.clone().map(move |b| [a, b]));
+            let found = both.into_iter().find(|[a, b]| (pair.is_of)(self.batch(*a), self.batch(*b)));
+            found.map(|found| (found, pair.project))
+        })
     }
 
     /// The type, indices, weight and scalars in force of a constraint; `None` if the id is none.

@@ -11,10 +11,10 @@
 
 use glam::DVec3;
 
-use super::deformation::{RestShape, gradient_four, orientation, recompose, strain_violation};
+use super::deformation::{self, Deformation, RestShape, orientation, recompose, strain_violation};
 use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
-use crate::linalg::lanes::{self, Mask, V4};
+use crate::linalg::lanes::{Mask, Svd4, V4};
 use crate::linalg::simd::Isa;
 
 /// One TetrahedronStrain constraint: its rest shape.
@@ -66,11 +66,7 @@ impl Constraint for TetrahedronStrain {
 
     #[inline(always)]
     fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
-        let gradient = gradient_four::<3, _, _>(&four, |tetrahedron| &tetrahedron.0, x);
-        let svd = lanes::svd(four.simd, gradient);
-        let (min, max) = (four.scalar(0), four.scalar(1));
-        let s = svd.turn_inside_out(gradient, svd.s.map(|s| s.max(min).min(max)));
-        svd.recompose(s, targets)
+        deformation::project_four(four, x, targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {
@@ -84,6 +80,24 @@ impl Constraint for TetrahedronStrain {
 
     fn is_degenerate(&self, _scalars: &[f64]) -> bool {
         self.0.is_degenerate()
+    }
+}
+
+impl Deformation<3> for TetrahedronStrain {
+    fn rest_shape(&self) -> &RestShape<3> {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn project_decomposed<S: Isa>(
+        four: Four<'_, Self, S>,
+        gradient: [V4<S>; 3],
+        svd: &Svd4<3, S>,
+        targets: &mut [V4<S>],
+    ) -> Mask<S> {
+        let (min, max) = (four.scalar(0), four.scalar(1));
+        let s = svd.turn_inside_out(gradient, svd.s.map(|s| s.max(min).min(max)));
+        svd.recompose(s, targets)
     }
 }
 

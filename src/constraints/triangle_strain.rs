@@ -8,10 +8,10 @@
 
 use glam::DVec3;
 
-use super::deformation::{RestShape, gradient_four, recompose, strain_violation};
+use super::deformation::{self, Deformation, RestShape, recompose, strain_violation};
 use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
-use crate::linalg::lanes::{self, Mask, V4};
+use crate::linalg::lanes::{Mask, Svd4, V4};
 use crate::linalg::simd::Isa;
 
 /// One TriangleStrain constraint: its rest shape.
@@ -61,9 +61,7 @@ impl Constraint for TriangleStrain {
 
     #[inline(always)]
     fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
-        let svd = lanes::svd(four.simd, gradient_four::<2, _, _>(&four, |triangle| &triangle.0, x));
-        let (min, max) = (four.scalar(0), four.scalar(1));
-        svd.recompose(svd.s.map(|s| s.max(min).min(max)), targets)
+        deformation::project_four(four, x, targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {
@@ -72,6 +70,23 @@ impl Constraint for TriangleStrain {
 
     fn is_degenerate(&self, _scalars: &[f64]) -> bool {
         self.0.is_degenerate()
+    }
+}
+
+impl Deformation<2> for TriangleStrain {
+    fn rest_shape(&self) -> &RestShape<2> {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn project_decomposed<S: Isa>(
+        four: Four<'_, Self, S>,
+        _gradient: [V4<S>; 2],
+        svd: &Svd4<2, S>,
+        targets: &mut [V4<S>],
+    ) -> Mask<S> {
+        let (min, max) = (four.scalar(0), four.scalar(1));
+        svd.recompose(svd.s.map(|s| s.max(min).min(max)), targets)
     }
 }
 

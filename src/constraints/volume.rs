@@ -11,11 +11,11 @@
 use glam::DVec3;
 
 use super::deformation::{
-    RestShape, gradient_four, move_product_into, move_product_into_four, orientation, recompose, strain_violation,
+    self, Deformation, RestShape, move_product_into, move_product_into_four, orientation, recompose, strain_violation,
 };
 use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
-use crate::linalg::lanes::{self, Mask, V4};
+use crate::linalg::lanes::{Mask, Svd4, V4};
 use crate::linalg::simd::Isa;
 
 /// One Volume constraint: its rest shape.
@@ -67,10 +67,7 @@ impl Constraint for Volume {
 
     #[inline(always)]
     fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
-        let gradient = gradient_four::<3, _, _>(&four, |tetrahedron| &tetrahedron.0, x);
-        let svd = lanes::svd(four.simd, gradient);
-        let s = move_product_into_four(svd.s, [four.scalar(0), four.scalar(1)]);
-        svd.recompose(svd.turn_inside_out(gradient, s), targets)
+        deformation::project_four(four, x, targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {
@@ -83,6 +80,23 @@ impl Constraint for Volume {
 
     fn is_degenerate(&self, _scalars: &[f64]) -> bool {
         self.0.is_degenerate()
+    }
+}
+
+impl Deformation<3> for Volume {
+    fn rest_shape(&self) -> &RestShape<3> {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn project_decomposed<S: Isa>(
+        four: Four<'_, Self, S>,
+        gradient: [V4<S>; 3],
+        svd: &Svd4<3, S>,
+        targets: &mut [V4<S>],
+    ) -> Mask<S> {
+        let s = move_product_into_four(svd.s, [four.scalar(0), four.scalar(1)]);
+        svd.recompose(svd.turn_inside_out(gradient, s), targets)
     }
 }
 

@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use super::chunks::Chunk;
 use super::linear_solver::Order;
 use crate::constraints::{ConstraintSet, Rows};
 use crate::error::Result;
@@ -36,18 +37,26 @@ pub(super) struct Gather {
 }
 
 impl Gather {
-    pub(super) fn new(constraints: &ConstraintSet, stiffness: &[Vec<f64>], order: Order<'_>) -> Self {
+    /// `bounds` says where the targets of each chunk begin.
+    pub(super) fn new(
+        constraints: &ConstraintSet,
+        stiffness: &[Vec<f64>],
+        chunks: &[Chunk],
+        bounds: &[usize],
+        order: Order<'_>,
+    ) -> Self {
+        let targets_of = (constraints, chunks, bounds);
         let row_count = order.place.len();
         let row = |unknown: u32| order.place[unknown as usize] as usize;
         let mut starts = vec![0_usize; row_count + 1];
-        each_target(constraints, stiffness, |point, _, _| starts[row(point) + 1] += 1);
+        each_target(targets_of, stiffness, |point, _, _| starts[row(point) + 1] += 1);
         for i in 0..row_count {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
         let mut targets = vec![0_u32; starts[row_count]];
         let mut coefficients = vec![0.0; starts[row_count]];
-        each_target(constraints, stiffness, |point, target, coefficient| {
+        each_target(targets_of, stiffness, |point, target, coefficient| {
             let place = &mut next[row(point)];
             (targets[*place], coefficients[*place]) = (target, coefficient * order.scale[point as usize]);
             *place += 1;
@@ -56,7 +65,7 @@ impl Gather {
         for (unknown, (&place, &factor)) in (0..).zip(order.place.iter().zip(order.scale)) {
             (unknowns[place as usize], scale[place as usize]) = (unknown, factor);
         }
-        Self { starts, targets, coefficients, unknowns, scale, bounds: chunk_bounds(row_count) }
+        Self { starts, targets, coefficients, unknowns, scale, bounds: even_bounds(row_count) }
     }
 
     /// The number of entries.
@@ -94,7 +103,7 @@ impl Gather {
 }
 
 /// Chunks of [`CHUNK_POINTS`]: where they begin, and `count`.
-pub(super) fn chunk_bounds(count: usize) -> Vec<usize> {
+pub(super) fn even_bounds(count: usize) -> Vec<usize> {
     let mut bounds: Vec<usize> = (0..count).step_by(CHUNK_POINTS).collect();
     bounds.push(count);
     bounds
@@ -124,26 +133,35 @@ impl Kernel for WriteRows<'_> {
 }
 
 /// Calls `visit(point, target, coefficient)` for every nonzero entry of `Aᵀ`, stiffness included.
-fn each_target(constraints: &ConstraintSet, stiffness: &[Vec<f64>], mut visit: impl FnMut(u32, u32, f64)) {
-    let mut base = 0;
-    for ((batch, _), stiffness) in constraints.batches().zip(stiffness) {
-        for (slot, &s) in stiffness.iter().enumerate() {
-            let (indices, first) = (batch.indices(slot), base + batch.target_offset(slot));
-            match batch.info().rows {
-                Rows::Centred if s > 0.0 => {
-                    indices.iter().enumerate().for_each(|(i, &point)| visit(point, (first + i) as u32, s));
-                }
-                Rows::Linear(_) if s > 0.0 => {
-                    for (r, row) in batch.rows(slot).chunks_exact(indices.len()).enumerate() {
-                        for (&point, &a) in indices.iter().zip(row).filter(|(_, a)| **a != 0.0) {
-                            visit(point, (first + r) as u32, s * a);
+fn each_target(
+    (constraints, chunks, bounds): (&ConstraintSet, &[Chunk], &[usize]),
+    stiffness: &[Vec<f64>],
+    mut visit: impl FnMut(u32, u32, f64),
+) {
+    for (chunk, &bound) in chunks.iter().zip(bounds) {
+        let mut first = bound;
+        for (index, slots) in chunk.batches() {
+            let batch = constraints.batch(index);
+            let start = batch.target_offset(slots.start);
+            for slot in slots {
+                let (s, indices) = (stiffness[index][slot], batch.indices(slot));
+                let first = first + batch.target_offset(slot) - start;
+                match batch.info().rows {
+                    Rows::Centred if s > 0.0 => {
+                        indices.iter().enumerate().for_each(|(i, &point)| visit(point, (first + i) as u32, s));
+                    }
+                    Rows::Linear(_) if s > 0.0 => {
+                        for (r, row) in batch.rows(slot).chunks_exact(indices.len()).enumerate() {
+                            for (&point, &a) in indices.iter().zip(row).filter(|(_, a)| **a != 0.0) {
+                                visit(point, (first + r) as u32, s * a);
+                            }
                         }
                     }
+                    _ => {}
                 }
-                _ => {}
             }
+            first += chunk.target_count(batch);
         }
-        base += batch.target_offset(batch.len());
     }
 }
 

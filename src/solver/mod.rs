@@ -8,6 +8,7 @@
 mod acceleration;
 mod anderson;
 mod assembly;
+mod chunks;
 mod free_components;
 mod history;
 mod linear_solver;

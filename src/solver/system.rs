@@ -16,7 +16,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::assembly::{Gather, chunk_bounds, fill, long_constraint_count, new_pattern};
+use super::assembly::{Gather, even_bounds, fill, long_constraint_count, new_pattern};
+use super::chunks::{Chunk, cut_into_chunks};
 use super::free_components::{FreeComponent, free_components};
 use super::linear_solver::{LARGEST_FACTOR_BYTES, LinearSolver, LinearSystem, Order};
 use super::parallel::for_parts;
@@ -25,10 +26,6 @@ use crate::constraints::ConstraintSet;
 use crate::error::{Error, Result, Status};
 use crate::linalg::cholesky::SymmetricMatrix;
 use crate::linalg::simd::{Lanes, lanes, vector};
-
-/// Indices (and so targets, roughly) that one chunk of the local step covers: some 10 µs of work, so that splitting costs
-/// little, and some ten chunks per thread of the smallest problem that runs in parallel.
-const CHUNK_INDICES: usize = 512;
 
 /// Targets above which the local step runs in parallel: with the fastest types, two threads break even at half as many.
 const PARALLEL_TARGETS: usize = 2048;
@@ -49,13 +46,6 @@ const RESISTANCE_STEPS: usize = 20;
 /// Part of a force that may be left after [`RESISTANCE_STEPS`]: what `N` resists with `PROXIMAL` times its diagonal
 /// shrinks by half in each step.
 const UNRESISTED: f64 = 1e-4;
-
-/// Consecutive constraints of one batch, and the part of all targets that they fill.
-struct Chunk {
-    batch: usize,
-    first_slot: usize,
-    end_slot: usize,
-}
 
 /// What was made since a solver was created.
 #[derive(Clone, Copy, Default)]
@@ -134,15 +124,16 @@ impl System {
 
         let unconstrained: Vec<u32> =
             (0..point_count).filter(|&i| matrix.diagonal(i) == 0.0).map(|i| i as u32).collect();
-        let point_bounds = chunk_bounds(point_count);
+        let (chunks, chunk_bounds) = cut_into_chunks(constraints);
+        let point_bounds = even_bounds(point_count);
         let mut system = Self {
             point_count,
             matrix,
             linear,
-            chunks: Vec::new(),
-            chunk_bounds: vec![0],
-            chunk_energies: Vec::new(),
-            targets: Vec::new(),
+            chunk_energies: vec![0.0; chunks.len()],
+            targets: vec![DVec3::ZERO; chunk_bounds[chunks.len()]],
+            chunks,
+            chunk_bounds,
             gather: Gather::default(),
             chunk_moves: vec![0.0; point_bounds.len() - 1],
             point_bounds,
@@ -156,11 +147,11 @@ impl System {
             analysis_seconds,
             factorisation_seconds: 0.0,
         };
-        system.cut_into_chunks(constraints);
         let started = Instant::now();
         system.make_definite(constraints, inertia, counts)?;
         system.factorisation_seconds = started.elapsed().as_secs_f64();
-        system.gather = Gather::new(constraints, &system.stiffness, system.linear.order());
+        let (chunks, bounds) = (&system.chunks, &system.chunk_bounds);
+        system.gather = Gather::new(constraints, &system.stiffness, chunks, bounds, system.linear.order());
         Ok(system)
     }
 
@@ -202,13 +193,19 @@ impl System {
         let is_parallel = is_parallel && self.is_local_step_long();
         let (chunks, stiffness) = (&self.chunks, &self.stiffness);
         let work = |i: usize, targets: &mut [DVec3], energy: &mut f64| {
-            let Chunk { batch: index, first_slot, end_slot } = chunks[i];
-            let (batch, slots) = (constraints.batch(index), first_slot..end_slot);
-            batch.project(slots.clone(), points, targets);
-            if wants_energy {
-                *energy = batch.squared_residual(slots.clone(), points, targets, &stiffness[index][slots.clone()]);
+            let chunk = &chunks[i];
+            chunk.project(constraints, points, targets);
+            *energy = 0.0;
+            let mut rest = targets;
+            for (index, slots) in chunk.batches() {
+                let batch = constraints.batch(index);
+                let (own, later) = rest.split_at_mut(chunk.target_count(batch));
+                if wants_energy {
+                    *energy += batch.squared_residual(slots.clone(), points, own, &stiffness[index][slots.clone()]);
+                }
+                batch.centre_targets(slots, own);
+                rest = later;
             }
-            batch.centre_targets(slots, targets);
         };
         for_parts(&self.chunk_bounds, &mut self.targets, &mut self.chunk_energies, is_parallel, &work);
         if wants_energy { 0.5 * self.chunk_energies.iter().sum::<f64>() } else { 0.0 }
@@ -413,23 +410,5 @@ impl System {
         let is_factor = self.linear.used() == LinearSolver::Direct;
         counts.factorisations = counts.factorisations.saturating_add(u32::from(is_factor));
         self.linear.prepare(&self.matrix)
-    }
-
-    fn cut_into_chunks(&mut self, constraints: &ConstraintSet) {
-        let mut target_count = 0;
-        for (index, (batch, _)) in constraints.batches().enumerate() {
-            let (mut first_slot, mut index_count) = (0, 0);
-            for slot in 0..batch.len() {
-                index_count += batch.indices(slot).len();
-                if index_count >= CHUNK_INDICES || slot + 1 == batch.len() {
-                    target_count += batch.target_offset(slot + 1) - batch.target_offset(first_slot);
-                    self.chunks.push(Chunk { batch: index, first_slot, end_slot: slot + 1 });
-                    self.chunk_bounds.push(target_count);
-                    (first_slot, index_count) = (slot + 1, 0);
-                }
-            }
-        }
-        self.chunk_energies = vec![0.0; self.chunks.len()];
-        self.targets = vec![DVec3::ZERO; target_count];
     }
 }
