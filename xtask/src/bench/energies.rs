@@ -92,7 +92,7 @@ impl Energies {
 
 impl Problem {
     /// `E*`, the lowest energy seen in any run.
-    pub fn lowest(&self) -> f64 {
+    fn lowest(&self) -> f64 {
         self.curves.iter().flat_map(|curve| &curve.energies).copied().fold(f64::INFINITY, f64::min)
     }
 
@@ -101,10 +101,10 @@ impl Problem {
         self.curves.iter().find(|curve| curve.method == method)
     }
 
-    /// `(E − E*)/|E*|`.
-    pub fn relative_error(&self, energy: f64) -> f64 {
+    /// `(E − E*)/|E*|` after each iteration of a curve.
+    pub fn errors(&self, curve: &Curve) -> Vec<f64> {
         let lowest = self.lowest();
-        (energy - lowest) / lowest.abs()
+        curve.energies.iter().map(|energy| (energy - lowest) / lowest.abs()).collect()
     }
 
     /// Evaluations and seconds until a curve is within a relative error.

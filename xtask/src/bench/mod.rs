@@ -67,9 +67,9 @@ pub fn run(options: &Options) -> Result<()> {
             println!("\n{}", page::page(&measurements));
         }
     }
-    if bench.plan.is_quick || bench.plan.sizes.contains(&energies::SIZE) {
+    if options.energies || bench.plan.is_quick || bench.plan.sizes.contains(&energies::SIZE) {
         let energies = bench.energies()?;
-        // Quick runs draw it too: it shows that this works.
+        // Drawn in any case: quick runs show that it works.
         let (part, drawing) = (page::energies(&energies), plot::energies(&energies)?);
         if bench.is_all {
             let file = docs.join("acceleration.md");

@@ -186,8 +186,7 @@ pub fn energies(energies: &Energies) -> String {
             };
             let errors = ERRORS.map(|error| cell(problem.reached(curve, error))).join(" | ");
             let left = curve.default_stop.map_or("–".into(), |stop| {
-                let error = problem.relative_error(curve.energies[stop]);
-                format!("{error:.0e} after {}", curve.evaluations[stop])
+                format!("{:.0e} after {}", problem.errors(curve)[stop], curve.evaluations[stop])
             });
             part += &format!(
                 "| {} | {} | {} | {errors} | {} | {left} |\n",

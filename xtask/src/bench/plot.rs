@@ -4,7 +4,7 @@ use anyhow::{Result, anyhow};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::energies::{Curve, Energies, Problem, name};
+use super::energies::{Energies, Problem, name};
 use super::measure::{Case, Measurements};
 
 /// Width and height of a plot in the units of its SVG.
@@ -151,9 +151,7 @@ fn draw_energies(text: &mut String, energies: &Energies) -> Drawn {
 
 /// One problem's curves, over evaluations from 1 to `most`.
 fn draw_panel(panel: &DrawingArea<SVGBackend<'_>, Shift>, problem: &Problem, most: f64) -> Drawn {
-    let errors =
-        |curve: &Curve| curve.energies.iter().map(|energy| problem.relative_error(*energy)).collect::<Vec<_>>();
-    let highest = problem.curves.iter().flat_map(errors).fold(1.0, f64::max);
+    let highest = problem.curves.iter().flat_map(|curve| problem.errors(curve)).fold(1.0, f64::max);
     let mut chart = ChartBuilder::on(panel)
         .margin(fine(8))
         .margin_right(fine(14))
@@ -174,7 +172,7 @@ fn draw_panel(panel: &DrawingArea<SVGBackend<'_>, Shift>, problem: &Problem, mos
         .draw()?;
     for (method, colour, width) in METHODS {
         let Some(curve) = problem.curve(method) else { continue };
-        let errors = errors(curve);
+        let errors = problem.errors(curve);
         // What lies along the lower edge at the end tells nothing.
         let end = errors.iter().rposition(|error| *error > LEAST_ERROR).map_or(0, |last| (last + 2).min(errors.len()));
         let points = curve.evaluations.iter().zip(&errors).take(end);
