@@ -154,7 +154,7 @@ fn draw_panel(panel: &DrawingArea<SVGBackend<'_>, Shift>, problem: &Problem, mos
     let highest = problem.curves.iter().flat_map(|curve| problem.errors(curve)).fold(1.0, f64::max);
     let mut chart = ChartBuilder::on(panel)
         .margin(fine(8))
-        .margin_right(fine(14))
+        .margin_right(fine(24))
         .caption(format!("{}, {} vertices", problem.name, problem.vertices), font(15).color(&INK))
         .set_label_area_size(LabelAreaPosition::Left, fine(44))
         .set_label_area_size(LabelAreaPosition::Bottom, fine(26))
@@ -177,6 +177,14 @@ fn draw_panel(panel: &DrawingArea<SVGBackend<'_>, Shift>, problem: &Problem, mos
         let end = errors.iter().rposition(|error| *error > LEAST_ERROR).map_or(0, |last| (last + 2).min(errors.len()));
         let points = curve.evaluations.iter().zip(&errors).take(end);
         let points = points.map(|(evaluations, error)| (f64::from(*evaluations), error.max(LEAST_ERROR)));
+        // Nearer points than these would cover each other.
+        let mut last = 0.0;
+        let is_apart = |point: &(f64, f64)| {
+            let is_apart = point.0 >= 1.005 * last;
+            last = if is_apart { point.0 } else { last };
+            is_apart
+        };
+        let points = points.filter(is_apart);
         chart.draw_series(LineSeries::new(points, colour.stroke_width(fine(width))))?;
     }
     Ok(())
