@@ -74,19 +74,24 @@ def main():
     init_seconds = time.perf_counter() - started
     if not is_ready:
         sys.exit("compas-shapeop could not initialise")
+    started = time.perf_counter()
     solver.solve(3)
+    solve_seconds = time.perf_counter() - started
     iterations = -(-iterations // 5)
     steps = []
     for _ in range(5):
         started = time.perf_counter()
         solver.solve(iterations)
         steps.append((time.perf_counter() - started) / iterations)
+    solve_seconds += iterations * sum(steps)
     if len(sys.argv) > 3:
         numpy.ascontiguousarray(solver.get_points().T, "<f8").tofile(sys.argv[3])
     line = {
         "vertices": header["points"],
         "init_ms": 1e3 * init_seconds,
         "iteration_ms": 1e3 * sorted(steps)[2],
+        "iterations": 3 + 5 * iterations,
+        "solve_ms": 1e3 * solve_seconds,
         "peak_mib": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
     }
     print(json.dumps(line))

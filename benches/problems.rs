@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
+mod energies;
 mod floor;
 mod handle;
 mod linear;
@@ -14,6 +15,7 @@ mod models;
 const USAGE: &str = "usage:
   problems NAME VERTICES [ITERATIONS [THREADS [POINTS_FILE]]]   initialisation and one iteration
   problems linear NAME VERTICES automatic|direct|conjugate-gradients [ITERATIONS [THREADS]]
+  problems energies NAME VERTICES plain|anderson|quasi-newton[:MEMORY] [ITERATIONS [THREADS]]   energy over iterations
   problems write NAME VERTICES FILE                             the model as a file
   problems bytes NAME VERTICES                                  what an iteration streams at least
   problems bandwidth BYTES THREADS                              reading an array of that size
@@ -42,6 +44,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         ["linear", name, vertex_count, choice, rest @ ..] => {
             let number = |i: usize, default: u32| rest.get(i).map_or(Ok(default), |text| text.parse());
             linear::time(&model(name, vertex_count)?, choice, number(0, 10)?, number(1, 0)? as usize)?
+        }
+        ["energies", name, vertex_count, method, rest @ ..] => {
+            let number = |i: usize, default: u32| rest.get(i).map_or(Ok(default), |text| text.parse());
+            energies::curve(&model(name, vertex_count)?, method, number(0, 2000)?, number(1, 0)? as usize)?
         }
         ["handle", rest @ ..] => {
             let number = |i: usize, default: u32| rest.get(i).map_or(Ok(default), |text| text.parse());

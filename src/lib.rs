@@ -73,6 +73,10 @@ pub mod solver;
 
 /// The pages with code in them, so that their code is compiled and run.
 #[cfg(doctest)]
+#[doc = include_str!("../docs/acceleration.md")]
+struct Acceleration;
+
+#[cfg(doctest)]
 #[doc = include_str!("../docs/adding-a-constraint.md")]
 struct AddingAConstraint;
 

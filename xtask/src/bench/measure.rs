@@ -52,6 +52,13 @@ pub struct Plan {
     pub profile: String,
 }
 
+impl Plan {
+    /// True if `problem` is to be measured.
+    pub fn has(&self, problem: &str) -> bool {
+        self.problems.is_empty() || self.problems.iter().any(|name| name == problem)
+    }
+}
+
 /// Everything that was measured.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Measurements {
@@ -204,14 +211,10 @@ impl Measurements {
     }
 }
 
-/// Builds the programs and measures.
-pub fn all(plan: &Plan, peer: &Result<PathBuf>, folder: &Path) -> Result<Measurements> {
-    let runner = Runner { program: build(&plan.profile)?, peer: peer.as_ref().ok().cloned(), folder: folder.into() };
+/// Measures all but the energies.
+pub fn all(runner: &Runner, plan: &Plan) -> Result<Measurements> {
     let mut cases = Vec::new();
-    for (problem, peer_has_it) in PROBLEMS {
-        if !plan.problems.is_empty() && !plan.problems.iter().any(|name| name == problem) {
-            continue;
-        }
+    for (problem, peer_has_it) in PROBLEMS.into_iter().filter(|(problem, _)| plan.has(problem)) {
         for &size in &plan.sizes {
             if size > LARGEST_OF_ALL && problem != LARGEST_PROBLEM {
                 continue;
@@ -228,7 +231,7 @@ pub fn all(plan: &Plan, peer: &Result<PathBuf>, folder: &Path) -> Result<Measure
         date: machine::date(),
         profile: plan.profile.clone(),
         repetitions: plan.repetitions,
-        peer_missing: peer.as_ref().err().map(|reason| format!("{reason:#}")),
+        peer_missing: runner.peer.as_ref().err().map(|reason| format!("{reason:#}")),
         cases,
         handle: Some(handle),
     })
@@ -262,10 +265,11 @@ fn build(profile: &str) -> Result<PathBuf> {
     programs.next_back().context("Cargo did not say where the benchmark is")
 }
 
-struct Runner {
+/// Runs the programs that measure.
+pub struct Runner {
     program: PathBuf,
-    /// The Python of the peer.
-    peer: Option<PathBuf>,
+    /// The Python of the peer, or why there is none.
+    pub peer: Result<PathBuf>,
     folder: PathBuf,
 }
 
@@ -273,6 +277,11 @@ struct Runner {
 type Runs = Vec<[f64; 3]>;
 
 impl Runner {
+    /// Builds this library's program.
+    pub fn new(profile: &str, peer: Result<PathBuf>, folder: PathBuf) -> Result<Self> {
+        Ok(Self { program: build(profile)?, peer, folder })
+    }
+
     fn case(&self, problem: &str, size: u32, peer_has_it: bool, plan: &Plan) -> Result<Case> {
         let iterations = match size {
             _ if plan.is_quick => 5,
@@ -290,11 +299,11 @@ impl Runner {
         let size_word = size.to_string();
         let found = self.ours(&["bytes", problem, &size_word]).and_then(|value| Ok(serde_json::from_value(value)?));
         case.bytes = self.note(&mut case, plan, "the bytes of the floor", found)?;
-        let peer = self.peer.as_ref().filter(|_| peer_has_it && size <= LARGEST_OF_PEER);
-        let model = self.folder.join("model.bin");
-        if peer.is_some() {
-            self.ours(&["write", problem, &size_word, &model.to_string_lossy()])?;
-        }
+        let peer = self.peer.as_ref().ok().filter(|_| peer_has_it && size <= LARGEST_OF_PEER);
+        let peer = match peer {
+            Some(python) => Some((python, self.write_model(problem, &size_word)?)),
+            None => None,
+        };
         let (points, peer_points) = (self.folder.join("points.bin"), self.folder.join("peer_points.bin"));
         let (mut runs, mut peer_runs, mut bandwidths) = ([Runs::new(), Runs::new()], Runs::new(), Vec::new());
         'repetitions: for _ in 0..repetitions {
@@ -307,10 +316,8 @@ impl Runner {
                 case.vertices = value["vertices"].as_u64().unwrap_or(0);
                 runs.push(times(&value)?);
             }
-            if let Some(python) = peer {
-                let mut command = Command::new(python);
-                command.arg(shell::root().join("benches/peer.py")).arg(&model).arg(iterations.to_string());
-                let found = shell::output(command.arg(&peer_points)).and_then(|text| parse(&text));
+            if let Some((python, model)) = &peer {
+                let found = self.peers(python, model, iterations, Some(&peer_points));
                 if let Some(value) = self.note(&mut case, plan, "compas-shapeop", found)? {
                     peer_runs.push(times(&value)?);
                     case.difference = Some(difference(&points, &peer_points)?);
@@ -346,8 +353,23 @@ impl Runner {
         Ok(Handle { solves_per_second, ..first })
     }
 
-    fn ours(&self, words: &[&str]) -> Result<Value> {
+    /// What this library's program prints.
+    pub fn ours(&self, words: &[&str]) -> Result<Value> {
         parse(&shell::output(Command::new(&self.program).args(words))?)
+    }
+
+    /// Writes a model for the peer.
+    pub fn write_model(&self, problem: &str, size: &str) -> Result<PathBuf> {
+        let model = self.folder.join("model.bin");
+        self.ours(&["write", problem, size, &model.to_string_lossy()])?;
+        Ok(model)
+    }
+
+    /// What the peer's program prints; it writes its points to a file, if one is named.
+    pub fn peers(&self, python: &Path, model: &Path, iterations: u32, points: Option<&Path>) -> Result<Value> {
+        let mut command = Command::new(python);
+        command.arg(shell::root().join("benches/peer.py")).arg(model).arg(iterations.to_string()).args(points);
+        parse(&shell::output(&mut command)?)
     }
 
     /// The value, or a note of why there is none; quick runs fail instead.
@@ -388,7 +410,8 @@ fn timing(runs: &[[f64; 3]]) -> Option<Timing> {
     })
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+/// The middle, or the mean of both that are nearest to it.
+pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
     match values.len() {

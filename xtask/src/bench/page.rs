@@ -1,5 +1,8 @@
-//! `docs/benchmarks.md`.
+//! `docs/benchmarks.md`, and the table in `docs/acceleration.md`.
 
+use anyhow::{Context, Result};
+
+use super::energies::{ERRORS, Energies, Problem, name};
 use super::measure::{Case, Measurements, Timing};
 
 /// The page.
@@ -157,9 +160,69 @@ fn scaling(page: &mut String, measurements: &Measurements) {
     }
 }
 
+/// What is around the measurements in `docs/acceleration.md`.
+const MARKS: [&str; 2] = ["<!-- `cargo xtask bench` writes from here -->\n", "<!-- to here -->\n"];
+
+/// `text` with `part` between the marks.
+pub fn replaced(text: &str, part: &str) -> Result<String> {
+    let (before, rest) = text.split_once(MARKS[0]).context("the first mark is missing")?;
+    let (_, after) = rest.split_once(MARKS[1]).context("the second mark is missing")?;
+    Ok([before, MARKS[0], "\n", part, "\n", MARKS[1], after].concat())
+}
+
+/// The plot and the table of energies.
+pub fn energies(energies: &Energies) -> String {
+    let mut part = format!(
+        "Measured on {}, two threads: {}.\n\n\
+         ![Relative error of the energy over evaluations](images/energy.svg)\n\n\
+         | problem | vertices | method | to 1e-3 | to 1e-6 | to 1e-9 | to plain's end | left at the default stop |\n\
+         |---|--:|---|--:|--:|--:|--:|--:|\n",
+        energies.date, energies.machine
+    );
+    for problem in &energies.problems {
+        for curve in &problem.curves {
+            let cell = |reached: Option<(u32, f64)>| {
+                reached.map_or("–".into(), |(evaluations, seconds)| format!("{evaluations} / {} s", figure(seconds)))
+            };
+            let errors = ERRORS.map(|error| cell(problem.reached(curve, error))).join(" | ");
+            let left = curve.default_stop.map_or("–".into(), |stop| {
+                format!("{:.0e} after {}", problem.errors(curve)[stop], curve.evaluations[stop])
+            });
+            part += &format!(
+                "| {} | {} | {} | {errors} | {} | {left} |\n",
+                problem.name,
+                problem.vertices,
+                name(&curve.method),
+                cell(problem.reached_plain_end(curve))
+            );
+        }
+    }
+    for problem in &energies.problems {
+        part += &beside_the_peer_to_an_error(problem).unwrap_or_default();
+    }
+    part.lines().map(wrapped).collect()
+}
+
+/// A sentence, where the peer was measured.
+fn beside_the_peer_to_an_error(problem: &Problem) -> Option<String> {
+    let peer = problem.peer.as_ref()?;
+    let ours = problem.curves.iter().filter_map(|curve| {
+        let [total_ms, times] = [problem.total_ms(curve)?, problem.times_sooner(curve)?].map(figure);
+        Some(format!("{} {total_ms} ms, {times} times sooner", name(&curve.method)))
+    });
+    Some(format!(
+        "\n{} to 1e-6, initialisation counted: compas-shapeop {} ms with {} iterations; {}.\n",
+        problem.name,
+        figure(peer.total_ms),
+        peer.iterations,
+        ours.collect::<Vec<_>>().join("; ")
+    ))
+}
+
 /// What repeats the measurements.
 const COMMANDS: &str = "cargo xtask bench                                      # all, and this page
 cargo xtask bench --sizes 10000 --problems squares     # some of it, printed only
+cargo xtask bench --energies                           # only the part of acceleration.md
 cargo xtask show speed --reuse                         # the last measurements beside the targets";
 
 fn how(page: &mut String, measurements: &Measurements) {

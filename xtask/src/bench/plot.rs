@@ -1,11 +1,13 @@
-//! The plot of scaling: time per iteration over the number of vertices, on logarithmic axes.
+//! The plots, on logarithmic axes: time per iteration over the number of vertices, and energies over evaluations.
 
 use anyhow::{Result, anyhow};
+use plotters::coord::Shift;
 use plotters::prelude::*;
 
+use super::energies::{Energies, Problem, name};
 use super::measure::{Case, Measurements};
 
-/// Width and height of the plot in the units of its SVG.
+/// Width and height of a plot in the units of its SVG.
 const SIZE: (u32, u32) = (1000, 640);
 
 /// The backend rounds coordinates to whole units: it draws so many times larger, and the view is shrunk.
@@ -22,15 +24,48 @@ const COLOURS: [(&str, RGBColor); 4] = [
     ("quad_circles", RGBColor(0x0f, 0x76, 0x6e)),
 ];
 
-/// The plot as SVG: this library on two threads in full lines, compas-shapeop in dashed ones.
+/// What methods of acceleration are drawn in: colour and width. The last drawn lies on top and is thin, so that lines below
+/// it are seen.
+const METHODS: [(&str, RGBColor, u32); 3] = [
+    ("plain", RGBColor(0x6b, 0x72, 0x80), 2),
+    ("anderson", RGBColor(0xe0, 0x8a, 0x1e), 4),
+    ("quasi-newton", RGBColor(0x17, 0x43, 0x99), 2),
+];
+
+/// The relative error of the energy at the lower edge of its panels.
+const LEAST_ERROR: f64 = 1e-10;
+
+/// Panels beside each other.
+const PANELS_PER_ROW: usize = 3;
+
+type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+/// The plot of scaling as SVG: this library on two threads in full lines, compas-shapeop in dashed ones.
 pub fn scaling(measurements: &Measurements) -> Result<String> {
+    svg(&|text| draw_scaling(text, measurements))
+}
+
+/// The plot of energies as SVG: the relative error over evaluations, a panel per problem.
+pub fn energies(energies: &Energies) -> Result<String> {
+    svg(&|text| draw_energies(text, energies))
+}
+
+fn svg(draw: &dyn Fn(&mut String) -> Drawn) -> Result<String> {
     let mut text = String::new();
-    draw(&mut text, measurements).map_err(|error| anyhow!("the plot could not be drawn: {error}"))?;
+    draw(&mut text).map_err(|error| anyhow!("the plot could not be drawn: {error}"))?;
     let drawn = format!("width=\"{}\" height=\"{}\"", SIZE.0 * FINENESS, SIZE.1 * FINENESS);
     Ok(text.replacen(&drawn, &format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1), 1))
 }
 
-fn draw(text: &mut String, measurements: &Measurements) -> Result<(), Box<dyn std::error::Error>> {
+fn fine(size: u32) -> u32 {
+    size * FINENESS
+}
+
+fn font(size: u32) -> FontDesc<'static> {
+    ("sans-serif", fine(size)).into_font()
+}
+
+fn draw_scaling(text: &mut String, measurements: &Measurements) -> Drawn {
     let ours = |case: &Case| Some((case.vertices as f64, case.two_threads.as_ref()?.iteration_ms));
     let peers = |case: &Case| Some((case.vertices as f64, case.peer.as_ref()?.iteration_ms));
     let all: Vec<(f64, f64)> = measurements.cases.iter().flat_map(|case| [ours(case), peers(case)]).flatten().collect();
@@ -39,8 +74,6 @@ fn draw(text: &mut String, measurements: &Measurements) -> Result<(), Box<dyn st
         (low, all.iter().map(values).fold(0.0, f64::max))
     };
     let ((least_x, most_x), (least_y, most_y)) = (bounds(&|point| point.0), bounds(&|point| point.1));
-    let fine = |size: u32| size * FINENESS;
-    let font = |size: u32| ("sans-serif", fine(size)).into_font();
     let root = SVGBackend::with_string(text, (fine(SIZE.0), fine(SIZE.1))).into_drawing_area();
     root.fill(&WHITE)?;
     // Room at the right for the names of the lines.
@@ -87,5 +120,72 @@ fn draw(text: &mut String, measurements: &Measurements) -> Result<(), Box<dyn st
         chart.draw_series([Text::new(name, (1.15 * x, y * step.powf(0.5)), font(13).color(&colour))])?;
     }
     root.present()?;
+    Ok(())
+}
+
+fn draw_energies(text: &mut String, energies: &Energies) -> Drawn {
+    let root = SVGBackend::with_string(text, (fine(SIZE.0), fine(SIZE.1))).into_drawing_area();
+    root.fill(&WHITE)?;
+    let (top, panels) = root.split_vertically(fine(44));
+    top.draw(&Text::new(
+        "Relative error of the energy over evaluations:",
+        (fine(16) as i32, fine(15) as i32),
+        font(18).color(&INK),
+    ))?;
+    for (i, (method, colour, width)) in METHODS.into_iter().enumerate() {
+        let at = |x: u32, y: u32| (fine(x + 150 * i as u32) as i32, fine(y) as i32);
+        top.draw(&PathElement::new([at(440, 25), at(475, 25)], colour.stroke_width(fine(width))))?;
+        top.draw(&Text::new(name(method), at(482, 16), font(16).color(&INK)))?;
+    }
+    // quad_circles is left out if it is one too many: circles has all of its constraints.
+    let count = energies.problems.len().min(2 * PANELS_PER_ROW);
+    let most = |problem: &Problem| problem.curves.iter().filter_map(|curve| curve.evaluations.last()).max().copied();
+    let most = energies.problems.iter().filter_map(most).max().unwrap_or(1);
+    let rows = panels.split_evenly((count.div_ceil(PANELS_PER_ROW), PANELS_PER_ROW));
+    for (problem, panel) in energies.problems.iter().zip(&rows) {
+        draw_panel(panel, problem, f64::from(most.max(10)))?;
+    }
+    root.present()?;
+    Ok(())
+}
+
+/// One problem's curves, over evaluations from 1 to `most`.
+fn draw_panel(panel: &DrawingArea<SVGBackend<'_>, Shift>, problem: &Problem, most: f64) -> Drawn {
+    let highest = problem.curves.iter().flat_map(|curve| problem.errors(curve)).fold(1.0, f64::max);
+    let mut chart = ChartBuilder::on(panel)
+        .margin(fine(8))
+        .margin_right(fine(24))
+        .caption(format!("{}, {} vertices", problem.name, problem.vertices), font(15).color(&INK))
+        .set_label_area_size(LabelAreaPosition::Left, fine(44))
+        .set_label_area_size(LabelAreaPosition::Bottom, fine(26))
+        .build_cartesian_2d((1.0..most).log_scale(), (LEAST_ERROR..2.0 * highest).log_scale())?;
+    chart
+        .configure_mesh()
+        .y_labels(8)
+        .x_label_formatter(&|x| format!("{x:.0}"))
+        .y_label_formatter(&|y| format!("{y:.0e}"))
+        .set_all_tick_mark_size(fine(4))
+        .axis_style(INK.stroke_width(FINENESS))
+        .light_line_style(WHITE)
+        .bold_line_style(GRID.stroke_width(FINENESS))
+        .label_style(font(12).color(&INK))
+        .draw()?;
+    for (method, colour, width) in METHODS {
+        let Some(curve) = problem.curve(method) else { continue };
+        let errors = problem.errors(curve);
+        // What lies along the lower edge at the end tells nothing.
+        let end = errors.iter().rposition(|error| *error > LEAST_ERROR).map_or(0, |last| (last + 2).min(errors.len()));
+        let points = curve.evaluations.iter().zip(&errors).take(end);
+        let points = points.map(|(evaluations, error)| (f64::from(*evaluations), error.max(LEAST_ERROR)));
+        // Nearer points than these would cover each other.
+        let mut last = 0.0;
+        let is_apart = |point: &(f64, f64)| {
+            let is_apart = point.0 >= 1.005 * last;
+            last = if is_apart { point.0 } else { last };
+            is_apart
+        };
+        let points = points.filter(is_apart);
+        chart.draw_series(LineSeries::new(points, colour.stroke_width(fine(width))))?;
+    }
     Ok(())
 }

@@ -3,8 +3,8 @@
 use anyhow::Result;
 
 use super::{Figures, number};
+use crate::bench::energies::{self, ERRORS, Energies};
 use crate::bench::{self, measure::Measurements};
-use crate::shell;
 
 /// At least so many times faster per iteration than compas-shapeop, at these sizes.
 const RATIOS: [(&str, [f64; 3]); 4] = [
@@ -21,14 +21,11 @@ const PROBLEMS: [&str; 6] = ["planar_quads", "cloth", "squares", "shell", "tets"
 /// libShapeOp 0.1.0 with tets at 50k, measured once on another machine: ms to initialise and per iteration.
 const TETS_OF_LIBSHAPEOP: [f64; 2] = [47_998.0, 768.0];
 
-/// The relative errors of the energy that [`Accelerated`] has evaluations for.
-const ERRORS: [&str; 3] = ["1e-3", "1e-6", "1e-9"];
-
-/// The method with its default memory, as the example calls it.
-const DEFAULT_METHOD: &str = "quasi-Newton 5";
+/// What acceleration is by default.
+const DEFAULT_METHOD: &str = "quasi-newton";
 
 pub fn show(figures: &mut Figures, reuse: bool, repetitions: Option<usize>) -> Result<()> {
-    let measurements = if reuse { bench::last()? } else { bench::measure_all(repetitions)? };
+    let (measurements, energies) = if reuse { bench::last()? } else { bench::measure_all(repetitions)? };
     println!("\n{}, measured on {}", measurements.machine, measurements.date);
     if let Some(reason) = &measurements.peer_missing {
         println!("compas-shapeop is missing: {}", reason.lines().next().unwrap_or_default());
@@ -36,7 +33,7 @@ pub fn show(figures: &mut Figures, reuse: bool, repetitions: Option<usize>) -> R
     beside_the_peer(figures, &measurements);
     floor(figures, &measurements);
     threads_and_size(figures, &measurements);
-    acceleration(figures, &measurements);
+    acceleration(figures, &energies);
     Ok(())
 }
 
@@ -77,10 +74,14 @@ fn beside_the_peer(figures: &mut Figures, measurements: &Measurements) {
         figures.plain("circles 10k: ms to initialise", &number(timing.init_ms));
         figures.plain("circles 10k: ms per iteration", &number(timing.iteration_ms));
     }
-    let tets = measurements.case("tets", 50_000).and_then(|case| case.two_threads.as_ref());
-    let [init, iteration] = TETS_OF_LIBSHAPEOP;
-    at_most(figures, "tets 50k: ms to initialise", tets.map(|timing| timing.init_ms), init);
-    at_most(figures, "tets 50k: ms per iteration", tets.map(|timing| timing.iteration_ms), iteration);
+    if let Some(tets) = measurements.case("tets", 50_000).and_then(|case| case.two_threads.as_ref()) {
+        let ours = [tets.init_ms, tets.iteration_ms];
+        let words = ["to initialise", "per iteration"];
+        for ((words, ours), other) in words.iter().zip(ours).zip(TETS_OF_LIBSHAPEOP) {
+            figures.plain(&format!("tets 50k: ms {words}"), &number(ours));
+            figures.plain(&format!("tets 50k: ms {words}, libShapeOp on another machine"), &number(other));
+        }
+    }
 }
 
 fn floor(figures: &mut Figures, measurements: &Measurements) {
@@ -130,81 +131,42 @@ fn threads_and_size(figures: &mut Figures, measurements: &Measurements) {
     at_least(figures, "solves per second", handle.map(|handle| handle.solves_per_second), 60.0);
 }
 
-/// What `examples/acceleration.rs` prints of one way to solve one problem.
-struct Accelerated {
-    method: String,
-    /// Evaluations and seconds to each of [`ERRORS`], then to the energy that the plain way ended at.
-    reached: [Option<(f64, f64)>; 4],
-}
-
-fn acceleration(figures: &mut Figures, measurements: &Measurements) {
-    figures.group("evaluations (and seconds) to a relative error of the energy, 10k");
-    let mut planar = Vec::new();
-    let mut squares = Vec::new();
-    for problem in ["planar_quads", "cloth", "squares", "shell", "tets", "quad_circles"] {
-        let runs = accelerated(problem);
-        if runs.is_empty() {
-            figures.not_measured(&format!("{problem}, plain and accelerated"), "a table");
+fn acceleration(figures: &mut Figures, energies: &Energies) {
+    figures.group("evaluations (and seconds) to a relative error of the energy, 10k, on two threads");
+    for name in PROBLEMS {
+        let Some(problem) = energies.problem(name) else {
+            figures.not_measured(&format!("{name}, plain and accelerated"), "a table");
             continue;
-        }
-        for run in &runs {
-            for (error, reached) in ERRORS.iter().zip(&run.reached) {
-                let text = reached.map_or("–".into(), |(evaluations, seconds)| format!("{evaluations} ({seconds})"));
-                figures.plain(&format!("{problem}, {}: to {error}", run.method), &text);
-            }
-        }
-        match problem {
-            "planar_quads" => planar = runs,
-            "squares" => squares = runs,
-            _ => {}
+        };
+        for (curve, error) in problem.curves.iter().flat_map(|curve| ERRORS.map(|error| (curve, error))) {
+            let text = match problem.reached(curve, error) {
+                Some((evaluations, seconds)) => format!("{evaluations} ({seconds:.3})"),
+                None => "–".into(),
+            };
+            figures.plain(&format!("{name}, {}: to {error:e}", energies::name(&curve.method)), &text);
         }
     }
     figures.group(&format!("acceleration with {DEFAULT_METHOD}, 10k"));
     // One method for all, chosen beforehand: the best of many would flatter.
-    let with_default = |runs: &[Accelerated], which: usize| {
-        runs.iter().find(|run| run.method == DEFAULT_METHOD).and_then(|run| run.reached[which])
-    };
-    let own = with_default(&planar, 1);
-    at_most(figures, "planar_quads: evaluations to 1e-6", own.map(|own| own.0), 45.0);
-    // The peer's iterates are those of the plain way, so it needs as many evaluations.
-    let sooner = || {
-        let case = measurements.case("planar_quads", 10_000)?;
-        let (peer, ours) = (case.peer.as_ref()?, case.two_threads.as_ref()?);
-        let evaluations = planar.iter().find(|run| run.method == "plain")?.reached[1]?.0;
-        Some((peer.init_ms + evaluations * peer.iteration_ms) / (ours.init_ms + 1e3 * own?.1))
-    };
-    at_least(figures, "planar_quads: sooner at 1e-6 than compas-shapeop, times", sooner(), 80.0);
+    let with_default =
+        |name: &str| energies.problem(name).and_then(|problem| Some((problem, problem.curve(DEFAULT_METHOD)?)));
+    let planar = with_default("planar_quads");
+    let evaluations = planar.and_then(|(problem, curve)| problem.reached(curve, 1e-6));
+    at_most(figures, "planar_quads: evaluations to 1e-6", evaluations.map(|(count, _)| f64::from(count)), 45.0);
+    if let Some((problem, curve)) = planar {
+        let ms = [problem.peer.as_ref().map(|peer| peer.total_ms), problem.total_ms(curve)];
+        for (who, ms) in ["compas-shapeop", "this library"].iter().zip(ms) {
+            let ms = ms.map_or("–".into(), |ms| format!("{ms:.1}"));
+            figures.plain(&format!("planar_quads: ms to initialise and reach 1e-6, {who}"), &ms);
+        }
+    }
+    let sooner = planar.and_then(|(problem, curve)| problem.times_sooner(curve));
+    at_least(figures, "planar_quads: sooner at 1e-6 than compas-shapeop, times", sooner, 80.0);
+    let evaluations = with_default("squares").and_then(|(problem, curve)| problem.reached_plain_end(curve));
     at_most(
         figures,
         "squares: evaluations to plain's energy after 2000",
-        with_default(&squares, 3).map(|reached| reached.0),
+        evaluations.map(|(count, _)| f64::from(count)),
         80.0,
     );
-}
-
-/// Runs the example, if it is there, on one problem of 10k vertices on two threads, and reads its table.
-fn accelerated(problem: &str) -> Vec<Accelerated> {
-    if !shell::root().join("examples/acceleration.rs").is_file() {
-        return Vec::new();
-    }
-    let arguments = ["run", "--quiet", "--release", "--example", "acceleration", "10000", "2", problem];
-    let text = match shell::output(shell::cargo().args(arguments)) {
-        Ok(text) => text,
-        Err(error) => {
-            println!("{error:#}");
-            return Vec::new();
-        }
-    };
-    let rows = text.lines().filter_map(|line| {
-        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        // | method | to 1e-3 | to 1e-6 | to 1e-9 | to plain's last | … |, each "45 / 0.123 s" or "–".
-        let ["", method, first, second, third, last, ..] = cells[..] else { return None };
-        let reached = |cell: &str| {
-            let (evaluations, seconds) = cell.split_once(" / ")?;
-            Some((evaluations.parse().ok()?, seconds.trim_end_matches(" s").parse().ok()?))
-        };
-        let run = Accelerated { method: method.to_owned(), reached: [first, second, third, last].map(reached) };
-        run.reached.iter().any(Option::is_some).then_some(run)
-    });
-    rows.collect()
 }
