@@ -284,22 +284,7 @@ impl<T: Constraint> Batch for TypedBatch<T> {
     }
 
     fn squared_residual(&self, slots: Range<usize>, points: &[DVec3], targets: &[DVec3], stiffness: &[f64]) -> f64 {
-        let first = self.target_offset(slots.start);
-        let mut sum = 0.0;
-        for (slot, stiffness) in slots.zip(stiffness) {
-            let x = self.stencil(slot, points);
-            let targets = &targets[self.target_offset(slot) - first..self.target_offset(slot + 1) - first];
-            let squared: f64 = match T::INFO.rows {
-                Rows::Centred => x.iter().zip(targets).map(|(point, &target)| (point - target).length_squared()).sum(),
-                Rows::Linear(_) => {
-                    let rows = self.rows(slot).chunks_exact(x.len());
-                    let image = |row: &[f64]| row.iter().zip(x.iter()).map(|(&a, point)| a * point).sum::<DVec3>();
-                    rows.zip(targets).map(|(row, &target)| (image(row) - target).length_squared()).sum()
-                }
-            };
-            sum += stiffness * squared;
-        }
-        sum
+        dispatch_lanes(SquaredResidual { batch: self, slots, points, targets, stiffness })
     }
 
     fn centre_targets(&self, slots: Range<usize>, targets: &mut [DVec3]) {
@@ -394,6 +379,43 @@ impl<T: Constraint> LaneKernel for Project<'_, T> {
             batch.project_rest(slot..slot + count, is_done, points, targets);
             slot += count;
         }
+    }
+}
+
+/// [`Batch::squared_residual`], four at a time.
+struct SquaredResidual<'a, T> {
+    batch: &'a TypedBatch<T>,
+    slots: Range<usize>,
+    points: &'a [DVec3],
+    targets: &'a [DVec3],
+    stiffness: &'a [f64],
+}
+
+impl<T: Constraint> LaneKernel for SquaredResidual<'_, T> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<S: Isa>(self, simd: S) -> f64 {
+        let Self { batch, slots, points, targets, stiffness } = self;
+        let first = batch.target_offset(slots.start);
+        let (mut sums, mut rest) = (F4::splat(simd, 0.0), 0.0);
+        let mut slot = slots.start;
+        while slot < slots.end {
+            let (targets, stiffness) =
+                (&targets[batch.target_offset(slot) - first..], &stiffness[slot - slots.start..]);
+            let k = batch.indices.get(slot).len();
+            if slot + 4 <= slots.end
+                && let Some(squared) = batch.squared_residual_of_four(simd, slot, k, points, targets)
+            {
+                let [a, b, c, d, ..] = *stiffness else { break };
+                sums = squared.mul_add(F4::new(simd, [a, b, c, d]), sums);
+                slot += 4;
+            } else {
+                rest += stiffness[0] * batch.squared_residual_of(slot, points, targets);
+                slot += 1;
+            }
+        }
+        sums.to_array().iter().sum::<f64>() + rest
     }
 }
 
@@ -497,6 +519,22 @@ const fn has_points<T: Constraint>(k: usize) -> bool {
     T::INFO.least_indices <= k && k <= most
 }
 
+/// Calls `$method::<K, S>` with the number of points as a constant, so that they stay in registers; `None` beyond 8.
+macro_rules! by_point_count {
+    ($k:expr, $self:ident.$method:ident($($argument:expr),*)) => {
+        by_point_count!(@ $k, $self.$method, ($($argument),*), 1, 2, 3, 4, 5, 6, 7, 8)
+    };
+    (@ $k:expr, $self:ident.$method:ident, $arguments:tt, $($count:literal),*) => {
+        match $k {
+            $($count if const { has_points::<T>($count) } => by_point_count!(@ $self.$method, $arguments, $count),)*
+            _ => None,
+        }
+    };
+    (@ $self:ident.$method:ident, ($($argument:expr),*), $count:literal) => {
+        $self.$method::<$count, S>($($argument),*)
+    };
+}
+
 impl<T: Constraint> TypedBatch<T> {
     /// Projects the constraints of four slots, if they are of `k` points each, into the beginning of `targets`; returns which of
     /// them are done.
@@ -509,16 +547,7 @@ impl<T: Constraint> TypedBatch<T> {
         points: &[DVec3],
         targets: &mut [DVec3],
     ) -> Option<Mask<S>> {
-        // With the number of points as a constant, they stay in registers.
-        macro_rules! by_point_count {
-            ($($k:literal),*) => {
-                match k {
-                    $($k if const { has_points::<T>($k) } => self.project_four_of::<$k, S>(simd, slot, points, targets),)*
-                    _ => None,
-                }
-            };
-        }
-        by_point_count!(1, 2, 3, 4, 5, 6, 7, 8)
+        by_point_count!(k, self.project_four_of(simd, slot, points, targets))
     }
 
     #[inline(always)]
@@ -539,6 +568,67 @@ impl<T: Constraint> TypedBatch<T> {
         let is_done = T::project_four(four, &x, &mut four_targets[..rows]);
         write_four(&four_targets[..rows], targets);
         Some(is_done)
+    }
+
+    /// `‖A x − p‖²` of the constraints of four slots, if they are of `k` points each; `targets` begin with theirs.
+    #[inline(always)]
+    fn squared_residual_of_four<S: Isa>(
+        &self,
+        simd: S,
+        slot: usize,
+        k: usize,
+        points: &[DVec3],
+        targets: &[DVec3],
+    ) -> Option<F4<S>> {
+        by_point_count!(k, self.squared_residual_of_four_of(simd, slot, points, targets))
+    }
+
+    #[inline(always)]
+    fn squared_residual_of_four_of<const K: usize, S: Isa>(
+        &self,
+        simd: S,
+        slot: usize,
+        points: &[DVec3],
+        targets: &[DVec3],
+    ) -> Option<F4<S>> {
+        let (_, x) = self.four::<K, S>(simd, slot, points)?;
+        let mut squared = F4::splat(simd, 0.0);
+        match T::INFO.rows {
+            Rows::Centred => {
+                let targets = &targets[..4 * K];
+                for (j, x) in x.into_iter().enumerate() {
+                    let target = V4::gather(simd, [0, 1, 2, 3].map(|i| &targets[i * K + j]));
+                    squared = (x - target).dot(x - target) + squared;
+                }
+            }
+            Rows::Linear(rows) => {
+                let targets = &targets[..4 * rows];
+                let coefficients = &self.coefficients[self.coefficient_range(slot).start..][..4 * rows * K];
+                for row in 0..rows {
+                    let mut image = V4::zero(simd);
+                    for (j, x) in x.into_iter().enumerate() {
+                        let coefficient = [0, 1, 2, 3].map(|i| coefficients[(i * rows + row) * K + j]);
+                        image = x.mul_add(F4::new(simd, coefficient), image);
+                    }
+                    let residual = image - V4::gather(simd, [0, 1, 2, 3].map(|i| &targets[i * rows + row]));
+                    squared = residual.dot(residual) + squared;
+                }
+            }
+        }
+        Some(squared)
+    }
+
+    /// `‖A x − p‖²` of one constraint; `targets` begin with its own.
+    fn squared_residual_of(&self, slot: usize, points: &[DVec3], targets: &[DVec3]) -> f64 {
+        let x = self.stencil(slot, points);
+        match T::INFO.rows {
+            Rows::Centred => x.iter().zip(targets).map(|(point, &target)| (point - target).length_squared()).sum(),
+            Rows::Linear(_) => {
+                let rows = self.rows(slot).chunks_exact(x.len());
+                let image = |row: &[f64]| row.iter().zip(x.iter()).map(|(&a, point)| a * point).sum::<DVec3>();
+                rows.zip(targets).map(|(row, &target)| (image(row) - target).length_squared()).sum()
+            }
+        }
     }
 
     /// The constraints of four slots and their points, if they are of `K` points each.

@@ -525,3 +525,45 @@ fn types_on_the_same_shapes_are_projected_together_as_each_alone() {
         }
     }
 }
+
+/// What the solver sums while it looks at the energy is `s ‖A x − p‖²` as the rows say.
+#[test]
+fn squared_residuals_are_those_of_the_rows() {
+    fn law<T: Constraint>() {
+        let info = T::INFO;
+        for seed in 0..20 {
+            let (rest, x, mut stream) = points(&info, seed);
+            let (k, count) = (rest.len(), 7);
+            // Two more constraints than fours hold, each on points of its own near the same shape.
+            let copies = |points: &[DVec3], stream: &mut Stream| -> Vec<DVec3> {
+                (0..count * k).map(|i| points[i % k] + 0.1 * stream.vector()).collect()
+            };
+            let (rest, x) = (copies(&rest, &mut stream), copies(&x, &mut stream));
+            let indices: Vec<u32> = (0..(count * k) as u32).collect();
+            let mut set = ConstraintSet::default();
+            let counts = vec![k; count];
+            let new = NewConstraints {
+                type_name: info.name,
+                indices: &indices,
+                counts: &counts,
+                weights: &[1.0],
+                scalars: &[],
+                scalar_counts: &[],
+            };
+            set.add(&rest, new, |i| i.to_string()).unwrap();
+            let Some((batch, _)) = set.batches().find(|(batch, _)| batch.len() > 0) else { panic!("{}", info.name) };
+            let row_count = batch.target_offset(1);
+            let (targets, stiffness) = (stream.vectors(count * row_count), [1.0, 2.0, 0.5, 3.0, 0.0, 1.5, 0.1]);
+            let expected: f64 = (0..count)
+                .map(|slot| {
+                    let x = &x[slot * k..(slot + 1) * k];
+                    let sample = Sample::<T>::at_rest(&rest[slot * k..(slot + 1) * k]);
+                    stiffness[slot] * squared_distance(&sample.image(x), &targets[slot * row_count..][..row_count])
+                })
+                .sum();
+            let found = batch.squared_residual(0..count, &x, &targets, &stiffness);
+            assert!((found - expected).abs() <= 1e-12 * expected, "{}: {found} is not {expected}", info.name);
+        }
+    }
+    for_each_type!(law);
+}
