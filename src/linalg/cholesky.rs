@@ -4,7 +4,10 @@
 //! judged by its own size whatever the weights are.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::linalg::matmul::{
+    matmul,
+    triangular::{self, BlockStructure},
+};
 use faer::perm::PermRef;
 use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::factorize_symbolic_cholesky;
@@ -13,10 +16,11 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
 };
 use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Par, Side};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::{Accum, MatMut, MatRef, Par, Side};
 use glam::DVec3;
 
+use super::fronts::{Lower, Product};
 use super::nested_dissection::{self, Graph};
 use super::panels::{Panels, Supernodes};
 use crate::error::{Error, Result, Status};
@@ -26,9 +30,6 @@ use crate::error::{Error, Result, Status};
 fn singular_pivot(dimension: usize) -> f64 {
     (f64::EPSILON * dimension as f64).max(1e-13)
 }
-
-/// What faer puts in the place of such a pivot: so much that the rest stays finite. The factor is of no use then.
-const REPLACED_PIVOT: f64 = 1e40;
 
 /// Adjacent supernodes of so many columns together are merged if at most this part of the merged block is zeros: wider
 /// panels for a few more values.
@@ -169,9 +170,14 @@ impl SymmetricMatrix {
 
     /// Calls `visit(i, j, value)` for every entry of the lower triangle, column by column, rows ascending.
     pub fn visit(&self, mut visit: impl FnMut(u32, u32, f64)) {
+        self.visit_pattern(|i, j, k| visit(i, j, self.values[k]));
+    }
+
+    /// Calls `visit(i, j, k)` for every entry of the lower triangle, `k` being the place of its value.
+    fn visit_pattern(&self, mut visit: impl FnMut(u32, u32, usize)) {
         for j in 0..self.dimension {
             for k in self.column_starts[j] as usize..self.column_starts[j + 1] as usize {
-                visit(self.rows[k], j as u32, self.values[k]);
+                visit(self.rows[k], j as u32, k);
             }
         }
     }
@@ -249,6 +255,9 @@ pub struct Factor {
     place: Vec<u32>,
     /// `1/√` of the matrix's diagonal.
     scale: Vec<f64>,
+    /// The entries of the matrix's lower triangle as [`Lower`] has them.
+    starts: Vec<u32>,
+    entries: Vec<[u32; 2]>,
     is_singular: bool,
 }
 
@@ -259,79 +268,56 @@ impl std::fmt::Debug for Factor {
 }
 
 impl Factor {
-    /// Lays out the panels for factors of the analysed pattern.
+    /// Lays out the panels for factors of matrices with the pattern of `matrix`, which `analysis` is of.
     ///
     /// # Errors
     /// Status `Internal` if the analysis is not supernodal, which it always is.
-    pub fn new(analysis: &Analysis) -> Result<Self> {
+    pub fn new(analysis: &Analysis, matrix: &SymmetricMatrix) -> Result<Self> {
         let symbolic = supernodal(analysis)?;
         // The number of columns ends the list of where supernodes begin.
         let mut begins = symbolic.supernode_begin().to_vec();
         begins.push(symbolic.ncols() as u32);
         let panels = Panels::new(&Supernodes { begins: &begins, rows: &|s| symbolic.supernode(s).pattern() });
         let position = panels.position();
-        let place = match analysis.symbolic.perm() {
+        let place: Vec<u32> = match analysis.symbolic.perm() {
             Some(permutation) => permutation.arrays().1.iter().map(|&i| position[i as usize]).collect(),
             None => position.to_vec(),
         };
-        Ok(Self { panels, place, scale: vec![1.0; symbolic.ncols()], is_singular: false })
+        let mut starts = vec![0_u32; matrix.dimension + 1];
+        let ends = |i: u32, j: u32| (place[i as usize].min(place[j as usize]), place[i as usize].max(place[j as usize]));
+        matrix.visit_pattern(|i, j, _| starts[ends(i, j).0 as usize + 1] += 1);
+        for i in 0..matrix.dimension {
+            starts[i + 1] += starts[i];
+        }
+        let mut next = starts.clone();
+        let mut entries = vec![[0; 2]; matrix.rows.len()];
+        matrix.visit_pattern(|i, j, k| {
+            let (column, row) = ends(i, j);
+            let place = &mut next[column as usize];
+            entries[*place as usize] = [row, k as u32];
+            *place += 1;
+        });
+        Ok(Self { panels, scale: vec![1.0; place.len()], place, starts, entries, is_singular: false })
     }
 
-    /// Factorises `matrix`, whose pattern `analysis` is of and whose diagonal is above 0. Where a row depends on others
-    /// within round-off, [`Self::is_singular`] says so and the factor is of no use.
+    /// Factorises `matrix`, whose diagonal is above 0; in parallel on the current rayon pool if `is_parallel`, with the same
+    /// bits. Where a row depends on others within round-off, [`Self::is_singular`] says so and the factor is of no use.
     ///
     /// # Errors
-    /// Status `InvalidValue` if the matrix is not finite; `Internal` if it is so singular that there is no factor at all,
-    /// which [`Self::is_singular`] says too.
-    pub fn factorise(&mut self, analysis: &Analysis, matrix: &SymmetricMatrix) -> Result<()> {
-        for (i, scale) in self.scale.iter_mut().enumerate() {
-            *scale = 1.0 / matrix.diagonal(i).sqrt();
+    /// Status `InvalidValue` if the matrix is not finite; `TooLarge` if memory does not suffice.
+    pub fn factorise(&mut self, matrix: &SymmetricMatrix, is_parallel: bool) -> Result<()> {
+        let mut scale = vec![0.0; matrix.dimension];
+        for (i, &place) in self.place.iter().enumerate() {
+            self.scale[i] = 1.0 / matrix.diagonal(i).sqrt();
+            scale[place as usize] = self.scale[i];
         }
-        let mut scaled = Vec::with_capacity(matrix.values.len());
-        for j in 0..matrix.dimension {
-            for k in matrix.column_starts[j] as usize..matrix.column_starts[j + 1] as usize {
-                scaled.push(matrix.values[k] * self.scale[j] * self.scale[matrix.rows[k] as usize]);
-            }
-        }
-        self.is_singular = false;
-        if !scaled.iter().all(|value| value.is_finite()) {
+        let lower = Lower { starts: &self.starts, entries: &self.entries, values: &matrix.values, scale: &scale };
+        let outcome = self.panels.factorise(&lower, singular_pivot(matrix.dimension), multiply, is_parallel);
+        let outcome = outcome.map_err(|error| too_large("the factor", &error))?;
+        self.is_singular = outcome.is_singular;
+        if !outcome.is_finite {
             return Err(Error::new(Status::InvalidValue, "the weights are too far apart for the system to be finite"));
         }
-        let regularization = LltRegularization {
-            dynamic_regularization_delta: REPLACED_PIVOT,
-            dynamic_regularization_epsilon: singular_pivot(matrix.dimension),
-        };
-        let symbolic = supernodal(analysis)?;
-        let count = analysis.factor_value_count();
-        let mut values = Vec::new();
-        values.try_reserve_exact(count).map_err(|error| too_large("the factor", &error))?;
-        values.resize(count, 0.0);
-        let scratch = analysis.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        let mut scratch = MemBuffer::try_new(scratch).map_err(|error| too_large("factorising", &error))?;
-        let outcome = analysis.symbolic.factorize_numeric_llt(
-            &mut values,
-            SparseColMatRef::new(pattern(matrix), &scaled),
-            Side::Lower,
-            regularization,
-            Par::Seq,
-            MemStack::new(&mut scratch),
-            Default::default(),
-        );
-        // Several vanishing pivots can lead to numbers beyond all bounds, where faer gives up.
-        self.is_singular = outcome.is_err();
-        outcome.map_err(|error| Error::new(Status::Internal, format!("factorisation failed: {error:?}")))?;
-        // faer divides by the root of what it puts in the place of a vanishing pivot, but leaves the pivot's own quotient.
-        let diagonal = |s: usize| {
-            let (start, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
-            let width = (end - start) as usize;
-            let stride = width + symbolic.supernode(s).pattern().len();
-            let first = symbolic.col_ptr_for_val()[s] as usize;
-            (0..width).map(move |i| first + i * (stride + 1))
-        };
-        let mut pivots = (0..symbolic.n_supernodes()).flat_map(diagonal).map(|i| values[i]);
-        self.is_singular = pivots.any(|root| root * root <= singular_pivot(matrix.dimension));
-        let starts = symbolic.col_ptr_for_val();
-        self.panels.fill(|s| &values[starts[s] as usize..starts[s + 1] as usize]);
         Ok(())
     }
 
@@ -389,6 +375,28 @@ fn pattern(matrix: &SymmetricMatrix) -> SymbolicSparseColMatRef<'_, u32> {
     SymbolicSparseColMatRef::new_checked(matrix.dimension, matrix.dimension, &matrix.column_starts, None, &matrix.rows)
 }
 
+/// The products of a factorisation that are large enough for all the care that faer takes.
+fn multiply(product: Product<'_>) {
+    let Product { target, target_stride, rows, columns, left, left_stride, inner } = product;
+    let target = MatMut::from_column_major_slice_with_stride_mut(target, rows, columns, target_stride);
+    let left = MatRef::from_column_major_slice_with_stride(left, rows, inner, left_stride);
+    let (triangle, below) = target.split_at_row_mut(columns);
+    let (top, bottom) = left.split_at_row(columns);
+    let full = BlockStructure::Rectangular;
+    triangular::matmul(
+        triangle,
+        BlockStructure::TriangularLower,
+        Accum::Add,
+        top,
+        full,
+        top.transpose(),
+        full,
+        -1.0,
+        Par::Seq,
+    );
+    matmul(below, Accum::Add, bottom, top.transpose(), -1.0, Par::Seq);
+}
+
 fn too_large(what: &str, error: &dyn std::fmt::Debug) -> Error {
     Error::new(Status::TooLarge, format!("{what} needs more memory than there is ({error:?})"))
 }
@@ -412,8 +420,8 @@ mod tests {
         }
         assert!(!matrix.add(0, 5, 1.0));
         let analysis = Analysis::new(&matrix, &[]).unwrap();
-        let mut factor = Factor::new(&analysis).unwrap();
-        factor.factorise(&analysis, &matrix).unwrap();
+        let mut factor = Factor::new(&analysis, &matrix).unwrap();
+        factor.factorise(&matrix, false).unwrap();
         assert!(!factor.is_singular());
         let mut x = vec![DVec3::ZERO; n as usize];
         x[n as usize - 1] = DVec3::new(1.0, -2.0, 1e-6);
@@ -457,8 +465,8 @@ mod tests {
                 for (held, is_singular) in [(0.0, true), (1e-3 * stiffness, false)] {
                     let matrix = grid(n, stiffness, held);
                     let analysis = Analysis::new(&matrix, &[]).unwrap();
-                    let mut factor = Factor::new(&analysis).unwrap();
-                    factor.factorise(&analysis, &matrix).unwrap();
+                    let mut factor = Factor::new(&analysis, &matrix).unwrap();
+                    factor.factorise(&matrix, false).unwrap();
                     assert_eq!(factor.is_singular(), is_singular, "{n} × {n}, stiffness {stiffness}, held by {held}");
                 }
             }
@@ -490,8 +498,8 @@ mod tests {
         let by_degree = Analysis::new(&matrix, &[]).unwrap();
         let dissected = Analysis::new(&matrix, &positions).unwrap();
         assert!(dissected.factor_value_count() < by_degree.factor_value_count(), "{dissected:?}, {by_degree:?}");
-        let mut factor = Factor::new(&dissected).unwrap();
-        factor.factorise(&dissected, &matrix).unwrap();
+        let mut factor = Factor::new(&dissected, &matrix).unwrap();
+        factor.factorise(&matrix, false).unwrap();
         let mut x = positions.clone();
         factor.solve(&mut x, false);
         let mut image = positions.clone();
@@ -505,8 +513,8 @@ mod tests {
         for n in [3, 30, 120] {
             let matrix = grid(n, 1.0, 1.0);
             let analysis = Analysis::new(&matrix, &[]).unwrap();
-            let mut factor = Factor::new(&analysis).unwrap();
-            factor.factorise(&analysis, &matrix).unwrap();
+            let mut factor = Factor::new(&analysis, &matrix).unwrap();
+            factor.factorise(&matrix, false).unwrap();
             let count = (n * n) as usize;
             let right: Vec<DVec3> =
                 (0..count).map(|i| DVec3::new((i % 7) as f64 - 3.0, (i % 11) as f64 - 5.0, (i % 3) as f64)).collect();

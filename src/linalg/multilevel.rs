@@ -215,9 +215,9 @@ fn factor(matrix: &SparseRows) -> Result<Option<(Factor, Vec<DVec3>)>> {
     let mut is_whole = true;
     each(&mut |i, j, value| is_whole &= symmetric.add(i, j, value));
     let analysis = Analysis::new(&symmetric, &[])?;
-    let mut factor = Factor::new(&analysis)?;
-    // A matrix that has no factor because it is too singular is none to solve with either.
-    let is_good = is_whole && factor.factorise(&analysis, &symmetric).is_ok() && !factor.is_singular();
+    let mut factor = Factor::new(&analysis, &symmetric)?;
+    // A matrix that is not finite is none to solve with either.
+    let is_good = is_whole && factor.factorise(&symmetric, false).is_ok() && !factor.is_singular();
     Ok(is_good.then(|| (factor, vec![DVec3::ZERO; n])))
 }
 

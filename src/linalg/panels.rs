@@ -9,10 +9,13 @@
 //! buffer each, and the buffers are added in order. The cut depends on the factor alone, so the bits do not depend on the
 //! number of threads. Unknowns are numbered part by part, the top last.
 
+use std::collections::TryReserveError;
+
+use super::fronts::{self, Lower, Multiply, Outcome};
 use super::simd::{Kernel, Lanes, add_scaled, dispatch};
 
 /// Columns of a panel at most: as many accumulators as leave registers for the rest.
-const WIDTH: usize = 8;
+pub(super) const WIDTH: usize = 8;
 
 /// Values of the factor above which it is cut into parts.
 const LEAST_VALUES: usize = 100_000;
@@ -32,28 +35,26 @@ pub struct Supernodes<'a> {
 }
 
 /// One supernode as it lies in its part.
-struct Supernode {
-    /// Its place in elimination order.
-    source: u32,
+pub(super) struct Supernode {
     /// Its first unknown, counted from the part's first.
-    first: u32,
-    width: u32,
+    pub(super) first: u32,
+    pub(super) width: u32,
     /// Its rows below lie in [`Part::rows`]: those within the part, then those in the top.
-    rows_start: u32,
-    rows_top: u32,
-    rows_end: u32,
+    pub(super) rows_start: u32,
+    pub(super) rows_top: u32,
+    pub(super) rows_end: u32,
 }
 
 /// Supernodes that are solved one after the other.
 #[derive(Default)]
-struct Part {
+pub(super) struct Part {
     /// The number of its unknowns.
-    length: usize,
-    supernodes: Vec<Supernode>,
+    pub(super) length: usize,
+    pub(super) supernodes: Vec<Supernode>,
     /// Counted from the part's first unknown, or from the top's first.
-    rows: Vec<u32>,
-    value_count: usize,
-    values: Vec<f64>,
+    pub(super) rows: Vec<u32>,
+    pub(super) value_count: usize,
+    pub(super) values: Vec<f64>,
 }
 
 /// The factor in panels, with the memory that solving needs.
@@ -69,7 +70,7 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Cuts the pattern into parts. Values come with [`Self::fill`].
+    /// Cuts the pattern into parts. Values come with [`Self::factorise`].
     pub fn new(supernodes: &Supernodes<'_>) -> Self {
         let count = supernodes.begins.len() - 1;
         let dimension = supernodes.begins[count] as usize;
@@ -105,7 +106,6 @@ impl Panels {
             let rows_start = part.rows.len();
             part.rows.extend(rows.iter().map(|&row| local[row as usize]));
             part.supernodes.push(Supernode {
-                source: s as u32,
                 first: local[begin as usize],
                 width: end - begin,
                 rows_start: rows_start as u32,
@@ -128,33 +128,15 @@ impl Panels {
         &mut self.x
     }
 
-    /// Takes over a factor. `block(s)` are the values of supernode `s`, column by column: its diagonal block (only the lower
-    /// triangle counts) above its rows.
-    pub fn fill<'a>(&mut self, block: impl Fn(usize) -> &'a [f64]) {
-        for part in &mut self.parts {
-            let mut values = std::mem::take(&mut part.values);
-            values.clear();
-            values.reserve_exact(part.value_count);
-            for supernode in &part.supernodes {
-                let (width, below) = (supernode.width as usize, (supernode.rows_end - supernode.rows_start) as usize);
-                let source = block(supernode.source as usize);
-                let stride = width + below;
-                for first in (0..width).step_by(WIDTH) {
-                    let end = (first + WIDTH).min(width);
-                    push_inverse(first, end, &|row, column| source[column * stride + row], &mut values);
-                    // Below the block: row by row out of the columns.
-                    let rows = stride - end;
-                    let start = values.len();
-                    values.resize(start + rows * (end - first), 0.0);
-                    for (c, column) in (first..end).enumerate() {
-                        let from = &source[column * stride + end..(column + 1) * stride];
-                        let to = values[start..].iter_mut().skip(c).step_by(end - first);
-                        to.zip(from).for_each(|(to, from)| *to = *from);
-                    }
-                }
-            }
-            part.values = values;
-        }
+    /// Factorises `lower`; see [`fronts::factorise`].
+    pub fn factorise(
+        &mut self,
+        lower: &Lower<'_>,
+        least_pivot: f64,
+        multiply: Multiply,
+        is_parallel: bool,
+    ) -> Result<Outcome, TryReserveError> {
+        fronts::factorise(&mut self.parts, lower, least_pivot, multiply, is_parallel)
     }
 
     /// Solves in place; the parts on the current rayon pool if `is_parallel`. Allocates nothing.
@@ -186,22 +168,6 @@ fn value_count(width: usize, below: usize) -> usize {
         (end - first) * (end - first + width - end + below)
     };
     (0..width).step_by(WIDTH).map(panel).sum()
-}
-
-/// Appends the inverse of the lower triangular diagonal block of columns `first..end`, row by row, zeros included.
-fn push_inverse(first: usize, end: usize, at: &impl Fn(usize, usize) -> f64, values: &mut Vec<f64>) {
-    let width = end - first;
-    let mut inverse = [[0.0; WIDTH]; WIDTH];
-    for j in 0..width {
-        inverse[j][j] = 1.0 / at(first + j, first + j);
-        for i in j + 1..width {
-            let sum: f64 = (j..i).map(|k| at(first + i, first + k) * inverse[k][j]).sum();
-            inverse[i][j] = -sum / at(first + i, first + i);
-        }
-    }
-    for row in &inverse[..width] {
-        values.extend_from_slice(&row[..width]);
-    }
 }
 
 /// The part of every supernode, subtrees of about equal work and the top, and the number of the top, which is the last.
@@ -302,6 +268,8 @@ macro_rules! with_width {
         }
     };
 }
+
+pub(super) use with_width;
 
 impl Kernel for Forward<'_> {
     type Output = ();

@@ -45,10 +45,7 @@ pub(super) struct LinearSystem {
 }
 
 enum Kind {
-    Direct {
-        analysis: Analysis,
-        factor: Factor,
-    },
+    Direct(Factor),
     /// `None` before the first matrix.
     Iterative(Option<ConjugateGradients>),
 }
@@ -84,14 +81,13 @@ impl LinearSystem {
             LinearSolver::Direct => "as asked for".to_owned(),
             _ => format!("computing the factor takes {}, at most {}", megabytes(bytes), megabytes(largest_bytes)),
         };
-        let factor = Factor::new(&analysis)?;
-        made(Kind::Direct { analysis, factor }, reason)
+        made(Kind::Direct(Factor::new(&analysis, matrix)?), reason)
     }
 
-    /// Prepares for solving with `matrix`, whose diagonal is above 0.
-    pub(super) fn prepare(&mut self, matrix: &SymmetricMatrix) -> Result<()> {
+    /// Prepares for solving with `matrix`, whose diagonal is above 0; on the current rayon pool if `is_parallel`.
+    pub(super) fn prepare(&mut self, matrix: &SymmetricMatrix, is_parallel: bool) -> Result<()> {
         match &mut self.kind {
-            Kind::Direct { analysis, factor } => factor.factorise(analysis, matrix),
+            Kind::Direct(factor) => factor.factorise(matrix, is_parallel),
             Kind::Iterative(gradients) => {
                 // The last one's memory is free before the next one takes its own.
                 *gradients = None;
@@ -113,7 +109,7 @@ impl LinearSystem {
     /// can resolve.
     pub(super) fn is_singular(&mut self) -> bool {
         match &mut self.kind {
-            Kind::Direct { factor, .. } => factor.is_singular(),
+            Kind::Direct(factor) => factor.is_singular(),
             Kind::Iterative(gradients) => gradients.as_mut().is_some_and(|gradients| gradients.is_singular(false)),
         }
     }
@@ -121,7 +117,7 @@ impl LinearSystem {
     /// `right_hand_sides` becomes the solution. Conjugate gradients begin at `start`, which may be shorter.
     pub(super) fn solve(&mut self, right_hand_sides: &mut [DVec3], start: &[DVec3], is_parallel: bool) {
         match &mut self.kind {
-            Kind::Direct { factor, .. } => factor.solve(right_hand_sides, is_parallel),
+            Kind::Direct(factor) => factor.solve(right_hand_sides, is_parallel),
             Kind::Iterative(Some(gradients)) => gradients.solve(right_hand_sides, start, is_parallel),
             Kind::Iterative(None) => {}
         }
@@ -130,7 +126,7 @@ impl LinearSystem {
     /// `Direct` or `ConjugateGradients`.
     pub(super) fn used(&self) -> LinearSolver {
         match &self.kind {
-            Kind::Direct { .. } => LinearSolver::Direct,
+            Kind::Direct(_) => LinearSolver::Direct,
             Kind::Iterative(_) => LinearSolver::ConjugateGradients,
         }
     }
@@ -192,7 +188,7 @@ mod tests {
             let mut system = LinearSystem::new(&matrix, &[], wish, bound).unwrap();
             assert_eq!(system.used(), expected);
             assert!(system.reason().contains(word), "{}", system.reason());
-            system.prepare(&matrix).unwrap();
+            system.prepare(&matrix, false).unwrap();
             assert!(!system.is_singular());
             let mut x = vec![DVec3::ONE; 100];
             system.solve(&mut x, &[DVec3::ZERO; 100], false);

@@ -100,6 +100,7 @@ impl System {
         wish: LinearSolver,
         previous: Option<Self>,
         counts: &mut SystemCounts,
+        is_parallel: bool,
     ) -> Result<Self> {
         let point_count = points.len();
         let stiffness: Vec<Vec<f64>> = constraints
@@ -153,7 +154,7 @@ impl System {
         };
         system.cut_into_chunks(constraints);
         let started = Instant::now();
-        system.make_definite(constraints, inertia, counts)?;
+        system.make_definite(constraints, inertia, counts, is_parallel)?;
         system.factorisation_seconds = started.elapsed().as_secs_f64();
         Ok(system)
     }
@@ -323,7 +324,7 @@ impl System {
     }
 
     /// Adds the inertia, or the remedies for a singular matrix, and factorises.
-    fn make_definite(&mut self, constraints: &ConstraintSet, inertia: f64, counts: &mut SystemCounts) -> Result<()> {
+    fn make_definite(&mut self, constraints: &ConstraintSet, inertia: f64, counts: &mut SystemCounts, is_parallel: bool) -> Result<()> {
         for i in self.point_count..self.matrix.dimension() {
             if self.matrix.diagonal(i) == 0.0 {
                 *self.matrix.diagonal_mut(i) = 1.0;
@@ -334,7 +335,7 @@ impl System {
             for i in 0..self.point_count {
                 *self.matrix.diagonal_mut(i) += inertia;
             }
-            return self.factorise(counts);
+            return self.factorise(counts, is_parallel);
         }
         for &point in &self.unconstrained {
             *self.matrix.diagonal_mut(point as usize) = 1.0;
@@ -345,7 +346,7 @@ impl System {
             component.held_stiffness = *diagonal;
             *diagonal *= 2.0;
         }
-        let factorised = self.factorise(counts);
+        let factorised = self.factorise(counts, is_parallel);
         if !self.linear.is_singular() {
             return factorised;
         }
@@ -362,15 +363,15 @@ impl System {
         for (i, pull) in self.proximal.iter().enumerate() {
             *self.matrix.diagonal_mut(i) += pull;
         }
-        self.factorise(counts)?;
+        self.factorise(counts, is_parallel)?;
         self.linear.expect_proximal_step();
         Ok(())
     }
 
-    fn factorise(&mut self, counts: &mut SystemCounts) -> Result<()> {
+    fn factorise(&mut self, counts: &mut SystemCounts, is_parallel: bool) -> Result<()> {
         let is_factor = self.linear.used() == LinearSolver::Direct;
         counts.factorisations = counts.factorisations.saturating_add(u32::from(is_factor));
-        self.linear.prepare(&self.matrix)
+        self.linear.prepare(&self.matrix, is_parallel)
     }
 
     fn cut_into_chunks(&mut self, constraints: &ConstraintSet) {
