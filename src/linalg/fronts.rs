@@ -80,6 +80,19 @@ struct Update<'a> {
     next: u32,
 }
 
+/// The shape of a front.
+#[derive(Clone, Copy)]
+struct Front {
+    /// The columns of the supernode.
+    width: usize,
+    /// The rows below.
+    below: usize,
+    /// `width` padded: where the rows below begin.
+    columns: usize,
+    /// `columns` and `below` padded.
+    stride: usize,
+}
+
 /// A part's share of the work.
 struct Job<'a> {
     lower: &'a Lower<'a>,
@@ -188,6 +201,7 @@ impl<'a> Kernel for Job<'a> {
             let (first, width, below) = (supernode.first as usize, supernode.width as usize, rows_end - rows_start);
             let (columns, update_stride) = (padded(width), padded(below));
             let stride = columns + update_stride;
+            let front = Front { width, below, columns, stride };
             (0..).zip(&mut place[first..first + width]).for_each(|(i, place)| *place = i);
             for (i, &row) in (columns as u32..).zip(rows) {
                 place[row as usize] = i;
@@ -222,7 +236,9 @@ impl<'a> Kernel for Job<'a> {
                 let block_end = (block + BLOCK).min(width);
                 for first in (block..block_end).step_by(WIDTH) {
                     let end = (first + WIDTH).min(width);
-                    outcome.is_singular |= eliminate::<FMA>(&mut own, stride, first, end, width, below, least_pivot, &mut values);
+                    let count = end - first;
+                    outcome.is_singular |=
+                        with_width!(count, eliminate, &mut own, front, first, least_pivot, &mut values);
                     if end < block_end {
                         spread::<FMA>(&mut own, stride, first, end, padded(block_end), multiply);
                     }
@@ -275,57 +291,49 @@ fn add_update(child: &[f64], places: &[u32], own: &mut [f64], columns: usize, st
     }
 }
 
-/// Eliminates the columns `first..end` of a front whose other columns have been: appends their panel to `values` and leaves
-/// their part below the diagonal block in the front. True if a pivot vanished.
+/// Eliminates `W` columns of a front from `first` on, those before them being done: appends their panel to `values` and leaves
+/// their rows below the diagonal block in the front. True if a pivot vanished.
 #[inline(always)]
-#[allow(clippy::too_many_arguments)]
-fn eliminate<const FMA: bool>(
+fn eliminate<const W: usize, const FMA: bool>(
     own: &mut [f64],
-    stride: usize,
+    front: Front,
     first: usize,
-    end: usize,
-    width: usize,
-    below: usize,
     least_pivot: f64,
     values: &mut Vec<f64>,
 ) -> bool {
-    let count = end - first;
-    let own = &mut own[first * stride..end * stride];
-    let mut root = [[0.0; WIDTH]; WIDTH];
-    let mut inverse = [[0.0; WIDTH]; WIDTH];
+    let stride = front.stride;
+    let own = &mut own[first * stride..(first + W) * stride];
+    let mut root = [[0.0; W]; W];
+    let mut inverse = [[0.0; W]; W];
     let mut is_singular = false;
-    for j in 0..count {
-        for i in j..count {
+    for j in 0..W {
+        for i in j..W {
             let sum: f64 = (0..j).map(|k| root[i][k] * root[j][k]).sum();
             root[i][j] = own[j * stride + first + i] - sum;
         }
-        // Not a number is not above it either.
+        // What is not a number is not above it either.
         let is_above = root[j][j] > least_pivot;
         is_singular |= !is_above;
         root[j][j] = if is_above { root[j][j].sqrt() } else { REPLACED_ROOT };
         inverse[j][j] = 1.0 / root[j][j];
-        for i in j + 1..count {
+        for i in j + 1..W {
             root[i][j] *= inverse[j][j];
         }
     }
-    for j in 0..count {
-        for i in j + 1..count {
+    for j in 0..W {
+        for i in j + 1..W {
             let sum: f64 = (j..i).map(|k| root[i][k] * inverse[k][j]).sum();
             inverse[i][j] = -sum * inverse[i][i];
         }
     }
-    let start = values.len();
-    for row in &inverse[..count] {
-        values.extend_from_slice(&row[..count]);
-    }
-    let inverse: [f64; WIDTH * WIDTH] = std::array::from_fn(|i| values.get(start + i).copied().unwrap_or(0.0));
+    values.extend_from_slice(inverse.as_flattened());
     // The later columns of the supernode, and the rows below.
-    for (begin, rows) in [(end, width - end), (padded(width), below)] {
+    let end = first + W;
+    for (begin, rows) in [(end, front.width - end), (front.columns, front.below)] {
         let start = values.len();
-        values.resize(start + padded(rows) * count, 0.0);
-        let panel = &mut values[start..];
-        with_width!(count, solve_rows, own, stride, begin, &inverse, panel);
-        values.truncate(start + rows * count);
+        values.resize(start + padded(rows) * W, 0.0);
+        solve_rows::<W, FMA>(own, stride, begin, &inverse, &mut values[start..]);
+        values.truncate(start + rows * W);
     }
     is_singular
 }
@@ -337,7 +345,7 @@ fn solve_rows<const W: usize, const FMA: bool>(
     own: &mut [f64],
     stride: usize,
     begin: usize,
-    inverse: &[f64; WIDTH * WIDTH],
+    inverse: &[[f64; W]; W],
     panel: &mut [f64],
 ) {
     for (rows, begin) in panel.chunks_exact_mut(4 * W).zip((begin..).step_by(4)) {
@@ -348,7 +356,7 @@ fn solve_rows<const W: usize, const FMA: bool>(
         let mut solved = [[0.0; 4]; W];
         for c in 0..W {
             for j in 0..=c {
-                solved[c] = add_scaled::<FMA>(solved[c], inverse[c * W + j], x[j]);
+                solved[c] = add_scaled::<FMA>(solved[c], inverse[c][j], x[j]);
             }
             own[c * stride + begin..c * stride + begin + 4].copy_from_slice(&solved[c]);
         }
