@@ -44,7 +44,7 @@ pub fn bytes(solver: &Solver) -> Result<Value, shapeop::error::Error> {
             }
         }
     })?;
-    let factor_values = Analysis::new(&matrix, solver.points())?.factor_value_count();
+    let factor_values = Analysis::new(matrix.pattern(), solver.points())?.factor_value_count();
     let (mut targets, mut constraint_bytes) = (0, 0);
     for view in &views {
         let k = view.indices.len();

@@ -46,24 +46,30 @@ const LEAST_DISSECTED: usize = 20_000;
 /// sheets with bending (149) by 10 %.
 const LEAST_FILL: usize = 128;
 
-/// The lower triangle of a symmetric matrix in compressed columns, assembled again and again into the same pattern.
+/// Where the lower triangle of a symmetric matrix has entries, in compressed columns.
 #[derive(Clone, Debug)]
-pub struct SymmetricMatrix {
+pub struct Pattern {
     dimension: usize,
     column_starts: Vec<u32>,
     /// Ascending within a column; the diagonal entry first.
     rows: Vec<u32>,
+}
+
+/// The lower triangle of a symmetric matrix, assembled again and again into the same pattern.
+#[derive(Clone, Debug)]
+pub struct SymmetricMatrix {
+    pattern: Pattern,
     values: Vec<f64>,
 }
 
-impl SymmetricMatrix {
-    /// The zero matrix with an entry wherever `visit` reports one. `visit` calls its argument with `(i, j)` for every
+impl Pattern {
+    /// An entry wherever `visit` reports one. `visit` calls its argument with `(i, j)` for every
     /// entry of either triangle, repeated ones included; the diagonal is always there. It is called twice and must
     /// report the same entries.
     ///
     /// # Errors
     /// Status `TooLarge` where 32-bit indices do not suffice.
-    pub fn with_pattern(dimension: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self> {
+    fn new(dimension: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self> {
         let mut counts = vec![1_usize; dimension];
         visit(&mut |i, j| counts[i.min(j) as usize] += usize::from(i != j));
         let mut next: Vec<usize> = Vec::with_capacity(dimension);
@@ -105,7 +111,7 @@ impl SymmetricMatrix {
         }
         rows.truncate(length);
         rows.shrink_to_fit();
-        Ok(Self { dimension, column_starts, values: vec![0.0; rows.len()], rows })
+        Ok(Self { dimension, column_starts, rows })
     }
 
     /// Who is whose neighbour.
@@ -134,47 +140,8 @@ impl SymmetricMatrix {
         Graph { starts, neighbours }
     }
 
-    /// The number of rows.
-    pub fn dimension(&self) -> usize {
-        self.dimension
-    }
-
-    /// Sets every entry to 0 and keeps the pattern.
-    pub fn clear(&mut self) {
-        self.values.fill(0.0);
-    }
-
-    /// Adds `value` to entry `(i, j)` and so to `(j, i)`. False if the pattern has no such entry.
-    #[must_use]
-    pub fn add(&mut self, i: u32, j: u32, value: f64) -> bool {
-        let (row, column) = (i.max(j), i.min(j) as usize);
-        let (start, end) = (self.column_starts[column] as usize, self.column_starts[column + 1] as usize);
-        match self.rows[start..end].binary_search(&row) {
-            Ok(k) => {
-                self.values[start + k] += value;
-                true
-            }
-            Err(_) => false,
-        }
-    }
-
-    /// The diagonal entry `i`.
-    pub fn diagonal(&self, i: usize) -> f64 {
-        self.values[self.column_starts[i] as usize]
-    }
-
-    /// A mutable reference to the diagonal entry `i`.
-    pub fn diagonal_mut(&mut self, i: usize) -> &mut f64 {
-        &mut self.values[self.column_starts[i] as usize]
-    }
-
-    /// Calls `visit(i, j, value)` for every entry of the lower triangle, column by column, rows ascending.
-    pub fn visit(&self, mut visit: impl FnMut(u32, u32, f64)) {
-        self.visit_pattern(|i, j, k| visit(i, j, self.values[k]));
-    }
-
-    /// Calls `visit(i, j, k)` for every entry of the lower triangle, `k` being the place of its value.
-    fn visit_pattern(&self, mut visit: impl FnMut(u32, u32, usize)) {
+    /// Calls `visit(i, j, k)` for every entry, column by column, rows ascending; `k` is the place of its value.
+    fn visit(&self, mut visit: impl FnMut(u32, u32, usize)) {
         for j in 0..self.dimension {
             for k in self.column_starts[j] as usize..self.column_starts[j + 1] as usize {
                 visit(self.rows[k], j as u32, k);
@@ -182,12 +149,80 @@ impl SymmetricMatrix {
         }
     }
 
+    /// Adds `value` to entry `(i, j)`, and so to `(j, i)`, of the matrix with these `values`. False if there is no such entry.
+    #[must_use]
+    pub fn add(&self, values: &mut [f64], i: u32, j: u32, value: f64) -> bool {
+        let (row, column) = (i.max(j), i.min(j) as usize);
+        let (start, end) = (self.column_starts[column] as usize, self.column_starts[column + 1] as usize);
+        match self.rows[start..end].binary_search(&row) {
+            Ok(k) => {
+                values[start + k] += value;
+                true
+            }
+            Err(_) => false,
+        }
+    }
+
+    /// The diagonal entry `i` of the matrix with these `values`.
+    pub fn diagonal(&self, values: &[f64], i: usize) -> f64 {
+        values[self.column_starts[i] as usize]
+    }
+}
+
+impl SymmetricMatrix {
+    /// The zero matrix with an entry wherever `visit` reports one. `visit` calls its argument with `(i, j)` for every
+    /// entry of either triangle, repeated ones included; the diagonal is always there. It is called twice and must
+    /// report the same entries.
+    ///
+    /// # Errors
+    /// Status `TooLarge` where 32-bit indices do not suffice.
+    pub fn with_pattern(dimension: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self> {
+        let pattern = Pattern::new(dimension, visit)?;
+        Ok(Self { values: vec![0.0; pattern.rows.len()], pattern })
+    }
+
+    /// Where it has entries.
+    pub fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    /// Its entries, for assembling them while the pattern is analysed.
+    pub fn split(&mut self) -> (&Pattern, &mut [f64]) {
+        (&self.pattern, &mut self.values)
+    }
+
+    /// The number of rows.
+    pub fn dimension(&self) -> usize {
+        self.pattern.dimension
+    }
+
+    /// Adds `value` to entry `(i, j)` and so to `(j, i)`. False if the pattern has no such entry.
+    #[must_use]
+    pub fn add(&mut self, i: u32, j: u32, value: f64) -> bool {
+        self.pattern.add(&mut self.values, i, j, value)
+    }
+
+    /// The diagonal entry `i`.
+    pub fn diagonal(&self, i: usize) -> f64 {
+        self.pattern.diagonal(&self.values, i)
+    }
+
+    /// A mutable reference to the diagonal entry `i`.
+    pub fn diagonal_mut(&mut self, i: usize) -> &mut f64 {
+        &mut self.values[self.pattern.column_starts[i] as usize]
+    }
+
+    /// Calls `visit(i, j, value)` for every entry of the lower triangle, column by column, rows ascending.
+    pub fn visit(&self, mut visit: impl FnMut(u32, u32, f64)) {
+        self.pattern.visit(|i, j, k| visit(i, j, self.values[k]));
+    }
+
     /// `y = A x` for three columns at once. Both slices have [`Self::dimension`] entries.
     pub fn multiply(&self, x: &[DVec3], y: &mut [DVec3]) {
         y.fill(DVec3::ZERO);
-        for j in 0..self.dimension {
-            for k in self.column_starts[j] as usize..self.column_starts[j + 1] as usize {
-                let (i, value) = (self.rows[k] as usize, self.values[k]);
+        for j in 0..self.pattern.dimension {
+            for k in self.pattern.column_starts[j] as usize..self.pattern.column_starts[j + 1] as usize {
+                let (i, value) = (self.pattern.rows[k] as usize, self.values[k]);
                 y[i] += value * x[j];
                 if i != j {
                     y[j] += value * x[i];
@@ -209,36 +244,36 @@ impl std::fmt::Debug for Analysis {
 }
 
 impl Analysis {
-    /// Analyses the pattern of `matrix`, which has at least one row. `positions` says where each unknown lies: large systems are
+    /// Analyses `pattern`, which has at least one row. `positions` says where each unknown lies: large systems are
     /// then ordered by nested dissection too, and the ordering with the smaller factor is kept. If there are more unknowns than
     /// positions, they are means of many points, which no cut separates, and minimum degree it is.
     ///
     /// # Errors
     /// Status `TooLarge` if memory does not suffice.
-    pub fn new(matrix: &SymmetricMatrix, positions: &[DVec3]) -> Result<Self> {
-        let by_degree = Self::ordered(matrix, SymmetricOrdering::Amd)?;
-        let is_worth_trying = matrix.dimension >= LEAST_DISSECTED
-            && by_degree.factor_value_count() >= LEAST_FILL * matrix.dimension
-            && positions.len() == matrix.dimension;
+    pub fn new(pattern: &Pattern, positions: &[DVec3]) -> Result<Self> {
+        let by_degree = Self::ordered(pattern, SymmetricOrdering::Amd)?;
+        let is_worth_trying = pattern.dimension >= LEAST_DISSECTED
+            && by_degree.factor_value_count() >= LEAST_FILL * pattern.dimension
+            && positions.len() == pattern.dimension;
         if !is_worth_trying {
             return Ok(by_degree);
         }
-        let graph = matrix.graph();
+        let graph = pattern.graph();
         let order = nested_dissection::order(&graph, positions, &mut |unknowns| order_leaf(&graph, unknowns));
         let mut inverse = vec![0_u32; order.len()];
         (0..).zip(&order).for_each(|(k, &unknown)| inverse[unknown as usize] = k);
-        let permutation = PermRef::new_checked(&order, &inverse, matrix.dimension);
-        let dissected = Self::ordered(matrix, SymmetricOrdering::Custom(permutation))?;
+        let permutation = PermRef::new_checked(&order, &inverse, pattern.dimension);
+        let dissected = Self::ordered(pattern, SymmetricOrdering::Custom(permutation))?;
         Ok(if dissected.factor_value_count() < by_degree.factor_value_count() { dissected } else { by_degree })
     }
 
-    fn ordered(matrix: &SymmetricMatrix, ordering: SymmetricOrdering<'_, u32>) -> Result<Self> {
+    fn ordered(pattern: &Pattern, ordering: SymmetricOrdering<'_, u32>) -> Result<Self> {
         let parameters = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: ALWAYS_SUPERNODAL,
             supernodal_params: SymbolicSupernodalParams { relax: Some(&RELAX) },
             ..Default::default()
         };
-        let symbolic = factorize_symbolic_cholesky(pattern(matrix), Side::Lower, ordering, parameters);
+        let symbolic = factorize_symbolic_cholesky(columns(pattern), Side::Lower, ordering, parameters);
         Ok(Self { symbolic: symbolic.map_err(|error| too_large("the analysis", &error))? })
     }
 
@@ -268,11 +303,11 @@ impl std::fmt::Debug for Factor {
 }
 
 impl Factor {
-    /// Lays out the panels for factors of matrices with the pattern of `matrix`, which `analysis` is of.
+    /// Lays out the panels for factors of matrices with this pattern, which `analysis` is of.
     ///
     /// # Errors
     /// Status `Internal` if the analysis is not supernodal, which it always is.
-    pub fn new(analysis: &Analysis, matrix: &SymmetricMatrix) -> Result<Self> {
+    pub fn new(analysis: &Analysis, pattern: &Pattern) -> Result<Self> {
         let symbolic = supernodal(analysis)?;
         // The number of columns ends the list of where supernodes begin.
         let mut begins = symbolic.supernode_begin().to_vec();
@@ -283,15 +318,15 @@ impl Factor {
             Some(permutation) => permutation.arrays().1.iter().map(|&i| position[i as usize]).collect(),
             None => position.to_vec(),
         };
-        let mut starts = vec![0_u32; matrix.dimension + 1];
+        let mut starts = vec![0_u32; pattern.dimension + 1];
         let ends = |i: u32, j: u32| (place[i as usize].min(place[j as usize]), place[i as usize].max(place[j as usize]));
-        matrix.visit_pattern(|i, j, _| starts[ends(i, j).0 as usize + 1] += 1);
-        for i in 0..matrix.dimension {
+        pattern.visit(|i, j, _| starts[ends(i, j).0 as usize + 1] += 1);
+        for i in 0..pattern.dimension {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
-        let mut entries = vec![[0; 2]; matrix.rows.len()];
-        matrix.visit_pattern(|i, j, k| {
+        let mut entries = vec![[0; 2]; pattern.rows.len()];
+        pattern.visit(|i, j, k| {
             let (column, row) = ends(i, j);
             let place = &mut next[column as usize];
             entries[*place as usize] = [row, k as u32];
@@ -306,13 +341,13 @@ impl Factor {
     /// # Errors
     /// Status `InvalidValue` if the matrix is not finite; `TooLarge` if memory does not suffice.
     pub fn factorise(&mut self, matrix: &SymmetricMatrix, is_parallel: bool) -> Result<()> {
-        let mut scale = vec![0.0; matrix.dimension];
+        let mut scale = vec![0.0; matrix.dimension()];
         for (i, &place) in self.place.iter().enumerate() {
             self.scale[i] = 1.0 / matrix.diagonal(i).sqrt();
             scale[place as usize] = self.scale[i];
         }
         let lower = Lower { starts: &self.starts, entries: &self.entries, values: &matrix.values, scale: &scale };
-        let outcome = self.panels.factorise(&lower, singular_pivot(matrix.dimension), multiply, is_parallel);
+        let outcome = self.panels.factorise(&lower, singular_pivot(matrix.dimension()), multiply, is_parallel);
         let outcome = outcome.map_err(|error| too_large("the factor", &error))?;
         self.is_singular = outcome.is_singular;
         if !outcome.is_finite {
@@ -371,8 +406,9 @@ fn supernodal(analysis: &Analysis) -> Result<&SymbolicSupernodalCholesky<u32>> {
     }
 }
 
-fn pattern(matrix: &SymmetricMatrix) -> SymbolicSparseColMatRef<'_, u32> {
-    SymbolicSparseColMatRef::new_checked(matrix.dimension, matrix.dimension, &matrix.column_starts, None, &matrix.rows)
+fn columns(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, u32> {
+    let n = pattern.dimension;
+    SymbolicSparseColMatRef::new_checked(n, n, &pattern.column_starts, None, &pattern.rows)
 }
 
 /// The products of a factorisation that are large enough for all the care that faer takes.
@@ -419,8 +455,8 @@ mod tests {
             }
         }
         assert!(!matrix.add(0, 5, 1.0));
-        let analysis = Analysis::new(&matrix, &[]).unwrap();
-        let mut factor = Factor::new(&analysis, &matrix).unwrap();
+        let analysis = Analysis::new(matrix.pattern(), &[]).unwrap();
+        let mut factor = Factor::new(&analysis, matrix.pattern()).unwrap();
         factor.factorise(&matrix, false).unwrap();
         assert!(!factor.is_singular());
         let mut x = vec![DVec3::ZERO; n as usize];
@@ -464,8 +500,8 @@ mod tests {
             for stiffness in [1e-8, 1.0, 3e8] {
                 for (held, is_singular) in [(0.0, true), (1e-3 * stiffness, false)] {
                     let matrix = grid(n, stiffness, held);
-                    let analysis = Analysis::new(&matrix, &[]).unwrap();
-                    let mut factor = Factor::new(&analysis, &matrix).unwrap();
+                    let analysis = Analysis::new(matrix.pattern(), &[]).unwrap();
+                    let mut factor = Factor::new(&analysis, matrix.pattern()).unwrap();
                     factor.factorise(&matrix, false).unwrap();
                     assert_eq!(factor.is_singular(), is_singular, "{n} × {n}, stiffness {stiffness}, held by {held}");
                 }
@@ -495,10 +531,10 @@ mod tests {
     #[test]
     fn dissecting_a_block_makes_a_smaller_factor_that_solves_as_well() {
         let (matrix, positions) = block(28);
-        let by_degree = Analysis::new(&matrix, &[]).unwrap();
-        let dissected = Analysis::new(&matrix, &positions).unwrap();
+        let by_degree = Analysis::new(matrix.pattern(), &[]).unwrap();
+        let dissected = Analysis::new(matrix.pattern(), &positions).unwrap();
         assert!(dissected.factor_value_count() < by_degree.factor_value_count(), "{dissected:?}, {by_degree:?}");
-        let mut factor = Factor::new(&dissected, &matrix).unwrap();
+        let mut factor = Factor::new(&dissected, matrix.pattern()).unwrap();
         factor.factorise(&matrix, false).unwrap();
         let mut x = positions.clone();
         factor.solve(&mut x, false);
@@ -512,8 +548,8 @@ mod tests {
         // The largest is cut into parts.
         for n in [3, 30, 120] {
             let matrix = grid(n, 1.0, 1.0);
-            let analysis = Analysis::new(&matrix, &[]).unwrap();
-            let mut factor = Factor::new(&analysis, &matrix).unwrap();
+            let analysis = Analysis::new(matrix.pattern(), &[]).unwrap();
+            let mut factor = Factor::new(&analysis, matrix.pattern()).unwrap();
             factor.factorise(&matrix, false).unwrap();
             let count = (n * n) as usize;
             let right: Vec<DVec3> =

@@ -6,7 +6,7 @@
 
 use crate::constraints::{ConstraintSet, Rows};
 use crate::error::Result;
-use crate::linalg::cholesky::SymmetricMatrix;
+use crate::linalg::cholesky::{Pattern, SymmetricMatrix};
 
 /// Centred constraints of more points than this get an unknown of their own. Up to here the block has fewer entries
 /// than the fill that a further unknown would cause when it is eliminated.
@@ -133,15 +133,15 @@ pub(super) fn new_pattern(
     })
 }
 
-/// Assembles the constraints' part of `N`. False if the pattern does not cover it.
+/// Assembles the constraints' part of `N` into `values`. False if the pattern does not cover it.
 pub(super) fn fill(
-    matrix: &mut SymmetricMatrix,
+    (pattern, values): (&Pattern, &mut [f64]),
     constraints: &ConstraintSet,
     stiffness: &[Vec<f64>],
     point_count: usize,
 ) -> bool {
-    matrix.clear();
+    values.fill(0.0);
     let mut is_covered = true;
-    each_entry(constraints, Some(stiffness), point_count, |i, j, value| is_covered &= matrix.add(i, j, value));
+    each_entry(constraints, Some(stiffness), point_count, |i, j, value| is_covered &= pattern.add(values, i, j, value));
     is_covered
 }

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use crate::error::{Error, Result, Status};
-use crate::linalg::cholesky::{Analysis, Factor, SymmetricMatrix};
+use crate::linalg::cholesky::{Analysis, Factor, Pattern, SymmetricMatrix};
 use crate::linalg::conjugate_gradients::ConjugateGradients;
 
 /// A value of the factor while it is computed: one in the order of the factorisation and one in that of the solves.
@@ -51,10 +51,10 @@ enum Kind {
 }
 
 impl LinearSystem {
-    /// Chooses for the pattern of `matrix`, whose first unknowns lie at `positions`. `largest_bytes` is
+    /// Chooses for `pattern`, whose first unknowns lie at `positions`. `largest_bytes` is
     /// [`LARGEST_FACTOR_BYTES`] but in tests.
     pub(super) fn new(
-        matrix: &SymmetricMatrix,
+        pattern: &Pattern,
         positions: &[DVec3],
         wish: LinearSolver,
         largest_bytes: u64,
@@ -63,7 +63,7 @@ impl LinearSystem {
         if wish == LinearSolver::ConjugateGradients {
             return made(Kind::Iterative(None), "as asked for".to_owned());
         }
-        let analysis = match Analysis::new(matrix, positions) {
+        let analysis = match Analysis::new(pattern, positions) {
             Ok(analysis) => analysis,
             // The pattern of the factor alone is beyond 32-bit indices or the memory.
             Err(error) if error.status() == Status::TooLarge && wish == LinearSolver::Automatic => {
@@ -81,7 +81,7 @@ impl LinearSystem {
             LinearSolver::Direct => "as asked for".to_owned(),
             _ => format!("computing the factor takes {}, at most {}", megabytes(bytes), megabytes(largest_bytes)),
         };
-        made(Kind::Direct(Factor::new(&analysis, matrix)?), reason)
+        made(Kind::Direct(Factor::new(&analysis, pattern)?), reason)
     }
 
     /// Prepares for solving with `matrix`, whose diagonal is above 0; on the current rayon pool if `is_parallel`.
@@ -177,7 +177,7 @@ mod tests {
         let chain = |report: &mut dyn FnMut(u32, u32)| (1..100).for_each(|i| report(i, i - 1));
         let mut matrix = SymmetricMatrix::with_pattern(100, chain).unwrap();
         (0..100).for_each(|i| *matrix.diagonal_mut(i) = 1.0);
-        let bytes = 16 * Analysis::new(&matrix, &[]).unwrap().factor_value_count() as u64;
+        let bytes = 16 * Analysis::new(matrix.pattern(), &[]).unwrap().factor_value_count() as u64;
         for (wish, bound, expected, word) in [
             (LinearSolver::Automatic, LARGEST_FACTOR_BYTES, LinearSolver::Direct, "at most 2000.0 MB"),
             (LinearSolver::Automatic, bytes, LinearSolver::Direct, "at most"),
@@ -185,7 +185,7 @@ mod tests {
             (LinearSolver::Direct, 0, LinearSolver::Direct, "as asked for"),
             (LinearSolver::ConjugateGradients, u64::MAX, LinearSolver::ConjugateGradients, "as asked for"),
         ] {
-            let mut system = LinearSystem::new(&matrix, &[], wish, bound).unwrap();
+            let mut system = LinearSystem::new(matrix.pattern(), &[], wish, bound).unwrap();
             assert_eq!(system.used(), expected);
             assert!(system.reason().contains(word), "{}", system.reason());
             system.prepare(&matrix, false).unwrap();

@@ -19,7 +19,7 @@ use glam::DVec3;
 use super::assembly::{Gather, fill, long_constraint_count, new_pattern};
 use super::free_components::{FreeComponent, free_components};
 use super::linear_solver::{LARGEST_FACTOR_BYTES, LinearSolver, LinearSystem};
-use super::parallel::for_parts;
+use super::parallel::{both, for_parts};
 use crate::constraints::ConstraintSet;
 use crate::error::{Error, Result, Status};
 use crate::linalg::cholesky::SymmetricMatrix;
@@ -110,41 +110,53 @@ impl System {
         // One without meaning where there is none, so that there is always a matrix.
         let unknown_count = (point_count + long_constraint_count(constraints)).max(1);
         let started = Instant::now();
-        let known = previous.filter(|known| known.matrix.dimension() == unknown_count);
-        let (mut matrix, known_linear) = match known {
+        let mut known = previous.filter(|known| known.matrix.dimension() == unknown_count);
+        let is_filled =
+            known.as_mut().is_some_and(|known| fill(known.matrix.split(), constraints, &stiffness, point_count));
+        let (mut matrix, known_linear) = match known.filter(|_| is_filled) {
             Some(known) => (known.matrix, Some(known.linear).filter(|linear| linear.wish == wish)),
             None => (new_pattern(constraints, point_count, unknown_count)?, None),
         };
-        let linear = match (fill(&mut matrix, constraints, &stiffness, point_count), known_linear) {
-            (true, Some(known)) => known,
-            (covered, _) => {
-                if !covered {
-                    matrix = new_pattern(constraints, point_count, unknown_count)?;
-                    fill(&mut matrix, constraints, &stiffness, point_count);
-                }
-                // Conjugate gradients that were asked for need no ordering.
-                counts.orderings = counts.orderings.saturating_add(u32::from(wish != LinearSolver::ConjugateGradients));
-                LinearSystem::new(&matrix, points, wish, LARGEST_FACTOR_BYTES)?
+        // Conjugate gradients that were asked for need no ordering.
+        let is_ordered = known_linear.is_none() && wish != LinearSolver::ConjugateGradients;
+        counts.orderings = counts.orderings.saturating_add(u32::from(is_ordered));
+        let (pattern, values) = matrix.split();
+        let analyse =
+            || known_linear.map_or_else(|| LinearSystem::new(pattern, points, wish, LARGEST_FACTOR_BYTES), Ok);
+        let assemble = || {
+            if !is_filled {
+                fill((pattern, &mut *values), constraints, &stiffness, point_count);
             }
+            let is_bare = |&i: &u32| pattern.diagonal(values, i as usize) == 0.0;
+            let unconstrained: Vec<u32> = (0..point_count as u32).filter(is_bare).collect();
+            // Inertia holds every point.
+            let is_static = inertia == 0.0;
+            let free = is_static.then(|| free_components(constraints, &stiffness, &unconstrained, point_count));
+            (unconstrained, free.unwrap_or_default())
         };
+        let gather = || {
+            let (chunks, chunk_bounds) = cut_into_chunks(constraints);
+            let targets = vec![DVec3::ZERO; chunk_bounds[chunks.len()]];
+            (Gather::new(constraints, &stiffness, point_count), chunks, chunk_bounds, targets)
+        };
+        let (linear, ((unconstrained, free_components), (gather, chunks, chunk_bounds, targets))) =
+            both(is_parallel, analyse, || both(is_parallel, assemble, gather));
+        let linear = linear?;
         let analysis_seconds = started.elapsed().as_secs_f64();
 
-        let unconstrained: Vec<u32> =
-            (0..point_count).filter(|&i| matrix.diagonal(i) == 0.0).map(|i| i as u32).collect();
-        let gather = Gather::new(constraints, &stiffness, point_count);
         let mut system = Self {
             point_count,
             matrix,
             linear,
-            chunks: Vec::new(),
-            chunk_bounds: vec![0],
-            chunk_energies: Vec::new(),
-            targets: Vec::new(),
+            chunk_energies: vec![0.0; chunks.len()],
+            chunks,
+            chunk_bounds,
+            targets,
             gather_results: vec![0.0; gather.bounds.len() - 1],
             gather,
             solution: vec![DVec3::ZERO; unknown_count],
             unconstrained,
-            free_components: Vec::new(),
+            free_components,
             proximal: Vec::new(),
             stiffness,
             change: Vec::new(),
@@ -152,9 +164,8 @@ impl System {
             analysis_seconds,
             factorisation_seconds: 0.0,
         };
-        system.cut_into_chunks(constraints);
         let started = Instant::now();
-        system.make_definite(constraints, inertia, counts, is_parallel)?;
+        system.make_definite(inertia, counts, is_parallel)?;
         system.factorisation_seconds = started.elapsed().as_secs_f64();
         Ok(system)
     }
@@ -324,7 +335,7 @@ impl System {
     }
 
     /// Adds the inertia, or the remedies for a singular matrix, and factorises.
-    fn make_definite(&mut self, constraints: &ConstraintSet, inertia: f64, counts: &mut SystemCounts, is_parallel: bool) -> Result<()> {
+    fn make_definite(&mut self, inertia: f64, counts: &mut SystemCounts, is_parallel: bool) -> Result<()> {
         for i in self.point_count..self.matrix.dimension() {
             if self.matrix.diagonal(i) == 0.0 {
                 *self.matrix.diagonal_mut(i) = 1.0;
@@ -340,7 +351,6 @@ impl System {
         for &point in &self.unconstrained {
             *self.matrix.diagonal_mut(point as usize) = 1.0;
         }
-        self.free_components = free_components(constraints, &self.stiffness, &self.unconstrained, self.point_count);
         for component in &mut self.free_components {
             let diagonal = self.matrix.diagonal_mut(component.points[0] as usize);
             component.held_stiffness = *diagonal;
@@ -373,22 +383,23 @@ impl System {
         counts.factorisations = counts.factorisations.saturating_add(u32::from(is_factor));
         self.linear.prepare(&self.matrix, is_parallel)
     }
+}
 
-    fn cut_into_chunks(&mut self, constraints: &ConstraintSet) {
-        let mut target_count = 0;
-        for (index, (batch, _)) in constraints.batches().enumerate() {
-            let (mut first_slot, mut index_count) = (0, 0);
-            for slot in 0..batch.len() {
-                index_count += batch.indices(slot).len();
-                if index_count >= CHUNK_INDICES || slot + 1 == batch.len() {
-                    target_count += batch.target_offset(slot + 1) - batch.target_offset(first_slot);
-                    self.chunks.push(Chunk { batch: index, first_slot, end_slot: slot + 1 });
-                    self.chunk_bounds.push(target_count);
-                    (first_slot, index_count) = (slot + 1, 0);
-                }
+/// The chunks of the local step, and where the targets of each begin with the number of all behind them.
+fn cut_into_chunks(constraints: &ConstraintSet) -> (Vec<Chunk>, Vec<usize>) {
+    let (mut chunks, mut bounds) = (Vec::new(), vec![0]);
+    let mut target_count = 0;
+    for (index, (batch, _)) in constraints.batches().enumerate() {
+        let (mut first_slot, mut index_count) = (0, 0);
+        for slot in 0..batch.len() {
+            index_count += batch.indices(slot).len();
+            if index_count >= CHUNK_INDICES || slot + 1 == batch.len() {
+                target_count += batch.target_offset(slot + 1) - batch.target_offset(first_slot);
+                chunks.push(Chunk { batch: index, first_slot, end_slot: slot + 1 });
+                bounds.push(target_count);
+                (first_slot, index_count) = (slot + 1, 0);
             }
         }
-        self.chunk_energies = vec![0.0; self.chunks.len()];
-        self.targets = vec![DVec3::ZERO; target_count];
     }
+    (chunks, bounds)
 }
