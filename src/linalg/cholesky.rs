@@ -9,6 +9,7 @@ use faer::linalg::matmul::{
     triangular::{self, BlockStructure},
 };
 use faer::perm::PermRef;
+use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::factorize_symbolic_cholesky;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
@@ -16,7 +17,6 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
 };
 use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams};
-use faer::sparse::SymbolicSparseColMatRef;
 use faer::{Accum, MatMut, MatRef, Par, Side};
 use glam::DVec3;
 
@@ -319,7 +319,8 @@ impl Factor {
             None => position.to_vec(),
         };
         let mut starts = vec![0_u32; pattern.dimension + 1];
-        let ends = |i: u32, j: u32| (place[i as usize].min(place[j as usize]), place[i as usize].max(place[j as usize]));
+        let ends =
+            |i: u32, j: u32| (place[i as usize].min(place[j as usize]), place[i as usize].max(place[j as usize]));
         pattern.visit(|i, j, _| starts[ends(i, j).0 as usize + 1] += 1);
         for i in 0..pattern.dimension {
             starts[i + 1] += starts[i];
@@ -541,6 +542,35 @@ mod tests {
         let mut image = positions.clone();
         matrix.multiply(&x, &mut image);
         assert!(image.iter().zip(&positions).all(|(a, b)| a.distance(*b) < 1e-12));
+        // Its fronts are large enough to be shared by threads.
+        for thread_count in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().unwrap();
+            pool.install(|| factor.factorise(&matrix, true)).unwrap();
+            let mut other = positions.clone();
+            factor.solve(&mut other, false);
+            assert!(other == x, "other bits on {thread_count} threads");
+        }
+    }
+
+    #[test]
+    fn large_products_are_what_is_defined() {
+        let (rows, columns, inner, stride) = (12, 8, 5, 13);
+        let numbers = |count: usize| (0..count).map(|i| (i * i % 31) as f64).collect::<Vec<f64>>();
+        let (left, before) = (numbers(stride * inner), numbers(stride * columns));
+        let mut target = before.clone();
+        multiply(Product {
+            target: &mut target,
+            target_stride: stride,
+            rows,
+            columns,
+            left: &left,
+            left_stride: stride,
+            inner,
+        });
+        for (i, j) in (0..columns).flat_map(|j| (j..rows).map(move |i| (i, j))) {
+            let sum: f64 = (0..inner).map(|k| left[k * stride + i] * left[k * stride + j]).sum();
+            assert_eq!(target[j * stride + i], before[j * stride + i] - sum);
+        }
     }
 
     #[test]
@@ -563,6 +593,7 @@ mod tests {
             assert!(residual < 1e-13 * largest, "{n} × {n}: residual {residual:e} at a solution of {largest:e}");
             for thread_count in [1, 2, 7] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().unwrap();
+                pool.install(|| factor.factorise(&matrix, true)).unwrap();
                 let mut other = right.clone();
                 pool.install(|| factor.solve(&mut other, true));
                 assert!(other == x, "{n} × {n}: other bits on {thread_count} threads");

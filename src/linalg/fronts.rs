@@ -21,6 +21,9 @@ const BLOCK: usize = 64;
 /// Products with so many terms in all are left to [`Multiply`].
 const LARGE_PRODUCT: usize = 1 << 18;
 
+/// Products of more terms are cut in two, whatever the number of threads, so that the bits do not depend on it.
+const LARGEST_PRODUCT: usize = 1 << 22;
+
 /// What stands for the root of a vanishing pivot: so much that the rest stays finite.
 const REPLACED_ROOT: f64 = 1e20;
 
@@ -45,7 +48,7 @@ pub struct Product<'a> {
     pub inner: usize,
 }
 
-/// Computes a large product.
+/// Computes a product that is large.
 pub type Multiply = fn(Product<'_>);
 
 /// The lower triangle of a matrix, its unknowns numbered as the panels number them.
@@ -107,6 +110,7 @@ struct Job<'a> {
     values: Vec<f64>,
     least_pivot: f64,
     multiply: Multiply,
+    is_parallel: bool,
 }
 
 struct Done<'a> {
@@ -135,7 +139,7 @@ pub fn factorise(
         let starts: Vec<usize> = sums.collect();
         let job = |i: usize, values: Vec<f64>| {
             let (part, start, top_start) = (&parts[i], starts[i], starts[top]);
-            Job { lower, part, start, top_start, updates: Vec::new(), values, least_pivot, multiply }
+            Job { lower, part, start, top_start, updates: Vec::new(), values, least_pivot, multiply, is_parallel }
         };
         let mut last = job(top, memory.pop().unwrap_or_default());
         let run = |(i, values)| dispatch(job(i, values));
@@ -173,7 +177,8 @@ impl<'a> Kernel for Job<'a> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) -> Self::Output {
-        let Self { lower, part, start, top_start, mut updates, mut values, least_pivot, multiply } = self;
+        let Self { lower, part, start, top_start, mut updates, mut values, least_pivot, .. } = self;
+        let multiply = (self.multiply, self.is_parallel);
         let mut outcome = Outcome { is_singular: false, is_finite: true };
         values.clear();
         // What the padding of the last panel takes too, before it is cut off.
@@ -376,7 +381,7 @@ fn spread<const FMA: bool>(
     first: usize,
     end: usize,
     columns: usize,
-    multiply: Multiply,
+    multiply: (Multiply, bool),
 ) {
     let (left, target) = own.split_at_mut(end * stride);
     let product = Product {
@@ -391,11 +396,32 @@ fn spread<const FMA: bool>(
     subtract_product::<FMA>(product, multiply);
 }
 
+/// Leaves a product to `multiply`, cut into parts for the current rayon pool if `is_parallel`.
+fn subtract_large_product(product: Product<'_>, multiply: Multiply, is_parallel: bool) {
+    let Product { target, target_stride, rows, columns, left, left_stride, inner } = product;
+    if rows * columns * inner <= LARGEST_PRODUCT || columns < 2 {
+        return multiply(Product { target, target_stride, rows, columns, left, left_stride, inner });
+    }
+    let middle = columns / 2;
+    let (first, second) = target.split_at_mut(middle * target_stride);
+    let first = Product { target: first, target_stride, rows, columns: middle, left, left_stride, inner };
+    let (target, left) = (&mut second[middle..], &left[middle..]);
+    let (rows, columns) = (rows - middle, columns - middle);
+    let second = Product { target, target_stride, rows, columns, left, left_stride, inner };
+    let work = |product| subtract_large_product(product, multiply, is_parallel);
+    if is_parallel {
+        rayon::join(|| work(first), || work(second));
+    } else {
+        work(first);
+        work(second);
+    }
+}
+
 /// A product whose rows and columns are multiples of four.
 #[inline(always)]
-fn subtract_product<const FMA: bool>(product: Product<'_>, multiply: Multiply) {
+fn subtract_product<const FMA: bool>(product: Product<'_>, (multiply, is_parallel): (Multiply, bool)) {
     if product.rows * product.columns * product.inner >= LARGE_PRODUCT {
-        return multiply(product);
+        return subtract_large_product(product, multiply, is_parallel);
     }
     let Product { target, target_stride, rows, columns, left, left_stride, inner } = product;
     for j in (0..columns).step_by(4) {
@@ -435,6 +461,58 @@ fn subtract_tile<const R: usize, const FMA: bool>(
         let start = (j + c) * target_stride + i;
         for (target, sum) in target[start..start + 4 * R].iter_mut().zip(sums.as_flattened()) {
             *target -= sum;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers of no order.
+    fn numbers(count: usize) -> Vec<f64> {
+        (0..count).map(|i| ((i * i + 7 * i) % 113) as f64 / 113.0 - 0.5).collect()
+    }
+
+    /// The product as it is defined.
+    fn defined(product: Product<'_>) {
+        let Product { target, target_stride, rows, columns, left, left_stride, inner } = product;
+        for j in 0..columns {
+            for i in j..rows {
+                let terms = (0..inner).map(|k| left[k * left_stride + i] * left[k * left_stride + j]);
+                target[j * target_stride + i] -= terms.sum::<f64>();
+            }
+        }
+    }
+
+    #[test]
+    fn small_products_and_large_ones_in_parts_are_what_is_defined() {
+        for (rows, columns, inner) in [(4, 4, 1), (12, 8, 5), (28, 28, 8), (36, 4, 11), (400, 320, 64)] {
+            let (left, stride) = (numbers((rows + 3) * inner), rows + 3);
+            let mut expected = numbers(stride * columns);
+            let mut portable = expected.clone();
+            let mut wide = expected.clone();
+            let mut cut = expected.clone();
+            let of = |target| Product {
+                target,
+                target_stride: stride,
+                rows,
+                columns,
+                left: &left,
+                left_stride: stride,
+                inner,
+            };
+            defined(of(&mut expected));
+            subtract_product::<false>(of(&mut portable), (defined, false));
+            subtract_product::<true>(of(&mut wide), (defined, false));
+            subtract_large_product(of(&mut cut), defined, true);
+            for j in 0..columns {
+                for place in (j..rows).map(|i| j * stride + i) {
+                    for found in [&portable, &wide, &cut] {
+                        assert!((found[place] - expected[place]).abs() < 1e-12, "{rows} × {columns} × {inner}");
+                    }
+                }
+            }
         }
     }
 }

@@ -407,32 +407,41 @@ mod tests {
     const BEGINS: [u32; 4] = [0, 3, 14, 20];
     const ROWS: [&[u32]; 3] = [&[14, 16, 19], &[15, 16, 17, 18], &[]];
 
-    /// A factor with this pattern, column by column within each supernode, and the same as a dense matrix.
-    fn factor() -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    /// A dense factor with this pattern.
+    fn factor() -> Vec<Vec<f64>> {
         let mut dense = vec![vec![0.0; 20]; 20];
-        let mut blocks = Vec::new();
         for s in 0..3 {
             let (begin, end) = (BEGINS[s] as usize, BEGINS[s + 1] as usize);
-            let rows: Vec<usize> = (begin..end).chain(ROWS[s].iter().map(|&row| row as usize)).collect();
-            let mut block = Vec::new();
+            let rows = || (begin..end).chain(ROWS[s].iter().map(|&row| row as usize));
             for column in begin..end {
-                for &row in &rows {
-                    let value = if row == column { 2.0 } else { ((7 * row + 13 * column) % 11) as f64 / 11.0 - 0.5 };
-                    if row >= column {
-                        dense[row][column] = value;
-                    }
-                    block.push(value);
+                for row in rows().filter(|&row| row >= column) {
+                    dense[row][column] =
+                        if row == column { 2.0 } else { ((7 * row + 13 * column) % 11) as f64 / 11.0 - 0.5 };
                 }
             }
-            blocks.push(block);
         }
-        (blocks, dense)
+        dense
     }
 
     fn panels() -> (Panels, Vec<Vec<f64>>) {
-        let (blocks, dense) = factor();
+        let dense = factor();
         let mut panels = Panels::new(&Supernodes { begins: &BEGINS, rows: &|s| ROWS[s] });
-        panels.fill(|s| &blocks[s]);
+        // Everything is in one part, in the order of elimination. Rows and columns are scaled by two.
+        let (mut starts, mut entries, mut values) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..20 {
+            for i in j..20 {
+                let value = (0..20).map(|k| dense[i][k] * dense[j][k]).sum::<f64>() / 4.0;
+                if value != 0.0 {
+                    entries.push([i as u32, values.len() as u32]);
+                    values.push(value);
+                }
+            }
+            starts.push(entries.len() as u32);
+        }
+        let scale = [2.0; 20];
+        let lower = Lower { starts: &starts, entries: &entries, values: &values, scale: &scale };
+        let outcome = panels.factorise(&lower, 1e-13, |_| unreachable!("no product is large"), false).unwrap();
+        assert!(outcome.is_finite && !outcome.is_singular);
         (panels, dense)
     }
 
@@ -468,14 +477,24 @@ mod tests {
     }
 
     #[test]
-    fn inverted_blocks_are_inverse() {
-        let (_, dense) = factor();
-        let mut values = Vec::new();
-        push_inverse(3, 11, &|row, column| dense[row][column], &mut values);
-        for i in 0..8 {
-            for j in 0..8 {
-                let product: f64 = (0..8).map(|k| dense[3 + i][3 + k] * values[8 * k + j]).sum();
-                assert!((product - f64::from(u8::from(i == j))).abs() < 1e-13);
+    fn panels_hold_inverse_blocks_above_the_rows_below() {
+        // The second supernode: panels of eight and three columns.
+        let (panels, dense) = panels();
+        let values = &panels.parts[0].values[3 * (3 + 3)..];
+        let (first, second) = values.split_at(8 * (8 + 3 + 4));
+        for (block, columns, below) in [(first, 3..11, [11, 12, 13].as_slice()), (second, 11..14, &[])] {
+            let width = columns.len();
+            let at = |i: usize, j: usize| dense[columns.start + i][columns.start + j];
+            for i in 0..width {
+                for j in 0..width {
+                    let product: f64 = (0..width).map(|k| at(i, k) * block[width * k + j]).sum();
+                    assert!((product - f64::from(u8::from(i == j))).abs() < 1e-13);
+                }
+            }
+            let rows = below.iter().chain(&[15, 16, 17, 18]);
+            for (row, values) in rows.zip(block[width * width..].chunks_exact(width)) {
+                let expected = &dense[*row][columns.clone()];
+                assert!(expected.iter().zip(values).all(|(a, b)| (a - b).abs() < 1e-13), "row {row}");
             }
         }
     }

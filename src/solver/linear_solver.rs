@@ -53,12 +53,7 @@ enum Kind {
 impl LinearSystem {
     /// Chooses for `pattern`, whose first unknowns lie at `positions`. `largest_bytes` is
     /// [`LARGEST_FACTOR_BYTES`] but in tests.
-    pub(super) fn new(
-        pattern: &Pattern,
-        positions: &[DVec3],
-        wish: LinearSolver,
-        largest_bytes: u64,
-    ) -> Result<Self> {
+    pub(super) fn new(pattern: &Pattern, positions: &[DVec3], wish: LinearSolver, largest_bytes: u64) -> Result<Self> {
         let made = |kind, reason| Ok(Self { wish, kind, reason, iterations_before: 0 });
         if wish == LinearSolver::ConjugateGradients {
             return made(Kind::Iterative(None), "as asked for".to_owned());
