@@ -77,7 +77,7 @@ struct Update<'a> {
     rows: &'a [u32],
     /// Its further rows, counted from the top's first unknown.
     top_rows: &'a [u32],
-    /// Column by column, padded.
+    /// Its lower triangle, column by column.
     values: Vec<f64>,
     /// The next update for the same supernode.
     next: u32,
@@ -197,7 +197,8 @@ impl<'a> Kernel for Job<'a> {
         }
         // Where an unknown of the part or, behind them, of the top lies in the front.
         let mut place = vec![0_u32; lower.scale.len() - top_start + if start < top_start { part.length } else { 0 }];
-        let mut own = Vec::new();
+        // The columns of the front and what they subtract from the rows below.
+        let (mut own, mut update) = (Vec::new(), Vec::new());
         let mut places: Vec<u32> = Vec::new();
         for (s, supernode) in part.supernodes.iter().enumerate() {
             let [rows_start, rows_top, rows_end] =
@@ -215,7 +216,6 @@ impl<'a> Kernel for Job<'a> {
                 place[part.length + row as usize] = i;
             }
             zero(&mut own, columns * stride)?;
-            let mut update = Vec::new();
             zero(&mut update, update_stride * update_stride)?;
             for (column, front) in (start + first..start + first + width).zip(own.chunks_exact_mut(stride)) {
                 let entries = lower.starts[column] as usize..lower.starts[column + 1] as usize;
@@ -265,7 +265,12 @@ impl<'a> Kernel for Job<'a> {
                 inner: width,
             };
             subtract_product::<FMA>(product, multiply);
-            let mut update = Update { rows, top_rows, values: update, next: NONE };
+            let mut triangle = Vec::new();
+            triangle.try_reserve_exact(below * (below + 1) / 2)?;
+            for (j, column) in update.chunks_exact(update_stride).take(below).enumerate() {
+                triangle.extend_from_slice(&column[j..below]);
+            }
+            let mut update = Update { rows, top_rows, values: triangle, next: NONE };
             if let Some(&row) = rows.first() {
                 update.next =
                     std::mem::replace(&mut first_update[supernode_of[row as usize] as usize], updates.len() as u32);
@@ -282,9 +287,11 @@ impl<'a> Kernel for Job<'a> {
 /// Adds the update of a child to the front of its parent: the columns `own`, `stride` apart, and the parent's `update`.
 #[inline(always)]
 fn add_update(child: &[f64], places: &[u32], own: &mut [f64], columns: usize, stride: usize, update: &mut [f64]) {
-    for (j, column) in child.chunks_exact(padded(places.len())).take(places.len()).enumerate() {
-        let to = places[j] as usize;
-        let entries = places[j..].iter().zip(&column[j..]);
+    let mut rest = child;
+    for (j, &to) in places.iter().enumerate() {
+        let (column, later) = rest.split_at(places.len() - j);
+        rest = later;
+        let (to, entries) = (to as usize, places[j..].iter().zip(column));
         if to < columns {
             let target = &mut own[to * stride..(to + 1) * stride];
             entries.for_each(|(&place, value)| target[place as usize] += value);

@@ -45,7 +45,7 @@ pub(super) struct LinearSystem {
 }
 
 enum Kind {
-    Direct(Factor),
+    Direct(Box<Factor>),
     /// `None` before the first matrix.
     Iterative(Option<ConjugateGradients>),
 }
@@ -76,7 +76,7 @@ impl LinearSystem {
             LinearSolver::Direct => "as asked for".to_owned(),
             _ => format!("computing the factor takes {}, at most {}", megabytes(bytes), megabytes(largest_bytes)),
         };
-        made(Kind::Direct(Factor::new(&analysis, pattern)?), reason)
+        made(Kind::Direct(Box::new(Factor::new(&analysis, pattern)?)), reason)
     }
 
     /// Prepares for solving with `matrix`, whose diagonal is above 0; on the current rayon pool if `is_parallel`.
