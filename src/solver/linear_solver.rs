@@ -9,7 +9,8 @@ use crate::error::{Error, Result, Status};
 use crate::linalg::cholesky::{Analysis, Factor, Pattern, SymmetricMatrix};
 use crate::linalg::conjugate_gradients::ConjugateGradients;
 
-/// A value of the factor while it is computed: one in the order of the factorisation and one in that of the solves.
+/// A value of the factor while it is computed: itself, and at most as much again for the fronts, which blocks of tetrahedra come
+/// near.
 const BYTES_PER_VALUE: u64 = 16;
 
 /// The most bytes that `Automatic` spends on a factor: a third of the 6 GB that a large model may take, as the model, the
@@ -47,7 +48,7 @@ pub(super) struct LinearSystem {
 enum Kind {
     Direct(Box<Factor>),
     /// `None` before the first matrix.
-    Iterative(Option<ConjugateGradients>),
+    Iterative(Option<Box<ConjugateGradients>>),
 }
 
 impl LinearSystem {
@@ -86,7 +87,7 @@ impl LinearSystem {
             Kind::Iterative(gradients) => {
                 // The last one's memory is free before the next one takes its own.
                 *gradients = None;
-                *gradients = Some(ConjugateGradients::new(matrix)?);
+                *gradients = Some(Box::new(ConjugateGradients::new(matrix)?));
                 self.iterations_before = 0;
                 Ok(())
             }
