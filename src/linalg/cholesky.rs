@@ -350,7 +350,7 @@ impl Factor {
         let lower = Lower { starts: &self.starts, entries: &self.entries, values: &matrix.values, scale: &scale };
         let outcome = self.panels.factorise(&lower, singular_pivot(matrix.dimension()), multiply, is_parallel);
         let outcome = outcome.map_err(|error| too_large("the factor", &error))?;
-        self.is_singular = outcome.is_singular;
+        self.is_singular = outcome.is_finite && outcome.is_singular;
         if !outcome.is_finite {
             return Err(Error::new(Status::InvalidValue, "the weights are too far apart for the system to be finite"));
         }

@@ -71,7 +71,7 @@ pub struct Outcome {
     pub is_finite: bool,
 }
 
-/// What a supernode subtracts from the rows below its columns.
+/// What a supernode adds to the rows below its columns, most of it negative.
 struct Update<'a> {
     /// Its rows, counted from the part's first unknown.
     rows: &'a [u32],
