@@ -4,8 +4,12 @@
 //! judged by its own size whatever the weights are.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::linalg::matmul::{
+    matmul,
+    triangular::{self, BlockStructure},
+};
 use faer::perm::PermRef;
+use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::factorize_symbolic_cholesky;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
@@ -13,10 +17,10 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
 };
 use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Par, Side};
+use faer::{Accum, MatMut, MatRef, Par, Side};
 use glam::DVec3;
 
+use super::fronts::{Lower, Product};
 use super::nested_dissection::{self, Graph};
 use super::panels::{Panels, Supernodes};
 use super::simd::{Lanes, lanes, vector};
@@ -27,9 +31,6 @@ use crate::error::{Error, Result, Status};
 fn singular_pivot(dimension: usize) -> f64 {
     (f64::EPSILON * dimension as f64).max(1e-13)
 }
-
-/// What faer puts in the place of such a pivot: so much that the rest stays finite. The factor is of no use then.
-const REPLACED_PIVOT: f64 = 1e40;
 
 /// Adjacent supernodes of so many columns together are merged if at most this part of the merged block is zeros: wider
 /// panels for a few more values.
@@ -46,24 +47,35 @@ const LEAST_DISSECTED: usize = 20_000;
 /// sheets with bending (149) by 10 %.
 const LEAST_FILL: usize = 128;
 
-/// The lower triangle of a symmetric matrix in compressed columns, assembled again and again into the same pattern.
+/// Where the lower triangle of a symmetric matrix has entries, in compressed columns.
 #[derive(Clone, Debug)]
-pub struct SymmetricMatrix {
+pub struct Pattern {
     dimension: usize,
     column_starts: Vec<u32>,
     /// Ascending within a column; the diagonal entry first.
     rows: Vec<u32>,
+}
+
+/// The lower triangle of a symmetric matrix, assembled again and again into the same pattern.
+#[derive(Clone, Debug)]
+pub struct SymmetricMatrix {
+    pattern: Pattern,
     values: Vec<f64>,
 }
 
-impl SymmetricMatrix {
-    /// The zero matrix with an entry wherever `visit` reports one. `visit` calls its argument with `(i, j)` for every
+impl Pattern {
+    /// The number of rows.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// An entry wherever `visit` reports one. `visit` calls its argument with `(i, j)` for every
     /// entry of either triangle, repeated ones included; the diagonal is always there. It is called twice and must
     /// report the same entries.
     ///
     /// # Errors
     /// Status `TooLarge` where 32-bit indices do not suffice.
-    pub fn with_pattern(dimension: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self> {
+    fn new(dimension: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self> {
         let mut counts = vec![1_usize; dimension];
         visit(&mut |i, j| counts[i.min(j) as usize] += usize::from(i != j));
         let mut next: Vec<usize> = Vec::with_capacity(dimension);
@@ -105,7 +117,7 @@ impl SymmetricMatrix {
         }
         rows.truncate(length);
         rows.shrink_to_fit();
-        Ok(Self { dimension, column_starts, values: vec![0.0; rows.len()], rows })
+        Ok(Self { dimension, column_starts, rows })
     }
 
     /// Who is whose neighbour.
@@ -134,55 +146,89 @@ impl SymmetricMatrix {
         Graph { starts, neighbours }
     }
 
-    /// The number of rows.
-    pub fn dimension(&self) -> usize {
-        self.dimension
+    /// Calls `visit(i, j, k)` for every entry, column by column, rows ascending; `k` is the place of its value.
+    fn visit(&self, mut visit: impl FnMut(u32, u32, usize)) {
+        for j in 0..self.dimension {
+            for k in self.column_starts[j] as usize..self.column_starts[j + 1] as usize {
+                visit(self.rows[k], j as u32, k);
+            }
+        }
     }
 
-    /// Sets every entry to 0 and keeps the pattern.
-    pub fn clear(&mut self) {
-        self.values.fill(0.0);
-    }
-
-    /// Adds `value` to entry `(i, j)` and so to `(j, i)`. False if the pattern has no such entry.
+    /// Adds `value` to entry `(i, j)`, and so to `(j, i)`, of the matrix with these `values`. False if there is no such entry.
     #[must_use]
-    pub fn add(&mut self, i: u32, j: u32, value: f64) -> bool {
+    pub fn add(&self, values: &mut [f64], i: u32, j: u32, value: f64) -> bool {
         let (row, column) = (i.max(j), i.min(j) as usize);
         let (start, end) = (self.column_starts[column] as usize, self.column_starts[column + 1] as usize);
         match self.rows[start..end].binary_search(&row) {
             Ok(k) => {
-                self.values[start + k] += value;
+                values[start + k] += value;
                 true
             }
             Err(_) => false,
         }
     }
 
+    /// The diagonal entry `i` of the matrix with these `values`.
+    pub fn diagonal(&self, values: &[f64], i: usize) -> f64 {
+        values[self.column_starts[i] as usize]
+    }
+}
+
+impl SymmetricMatrix {
+    /// The zero matrix with an entry wherever `visit` reports one. `visit` calls its argument with `(i, j)` for every
+    /// entry of either triangle, repeated ones included; the diagonal is always there. It is called twice and must
+    /// report the same entries.
+    ///
+    /// # Errors
+    /// Status `TooLarge` where 32-bit indices do not suffice.
+    pub fn with_pattern(dimension: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self> {
+        let pattern = Pattern::new(dimension, visit)?;
+        Ok(Self { values: vec![0.0; pattern.rows.len()], pattern })
+    }
+
+    /// Where it has entries.
+    pub fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    /// Its entries, for assembling them while the pattern is analysed.
+    pub fn split(&mut self) -> (&Pattern, &mut [f64]) {
+        (&self.pattern, &mut self.values)
+    }
+
+    /// The number of rows.
+    pub fn dimension(&self) -> usize {
+        self.pattern.dimension
+    }
+
+    /// Adds `value` to entry `(i, j)` and so to `(j, i)`. False if the pattern has no such entry.
+    #[must_use]
+    pub fn add(&mut self, i: u32, j: u32, value: f64) -> bool {
+        self.pattern.add(&mut self.values, i, j, value)
+    }
+
     /// The diagonal entry `i`.
     pub fn diagonal(&self, i: usize) -> f64 {
-        self.values[self.column_starts[i] as usize]
+        self.pattern.diagonal(&self.values, i)
     }
 
     /// A mutable reference to the diagonal entry `i`.
     pub fn diagonal_mut(&mut self, i: usize) -> &mut f64 {
-        &mut self.values[self.column_starts[i] as usize]
+        &mut self.values[self.pattern.column_starts[i] as usize]
     }
 
     /// Calls `visit(i, j, value)` for every entry of the lower triangle, column by column, rows ascending.
     pub fn visit(&self, mut visit: impl FnMut(u32, u32, f64)) {
-        for j in 0..self.dimension {
-            for k in self.column_starts[j] as usize..self.column_starts[j + 1] as usize {
-                visit(self.rows[k], j as u32, self.values[k]);
-            }
-        }
+        self.pattern.visit(|i, j, k| visit(i, j, self.values[k]));
     }
 
     /// `y = A x` for three columns at once. Both slices have [`Self::dimension`] entries.
     pub fn multiply(&self, x: &[DVec3], y: &mut [DVec3]) {
         y.fill(DVec3::ZERO);
-        for j in 0..self.dimension {
-            for k in self.column_starts[j] as usize..self.column_starts[j + 1] as usize {
-                let (i, value) = (self.rows[k] as usize, self.values[k]);
+        for j in 0..self.pattern.dimension {
+            for k in self.pattern.column_starts[j] as usize..self.pattern.column_starts[j + 1] as usize {
+                let (i, value) = (self.pattern.rows[k] as usize, self.values[k]);
                 y[i] += value * x[j];
                 if i != j {
                     y[j] += value * x[i];
@@ -204,36 +250,36 @@ impl std::fmt::Debug for Analysis {
 }
 
 impl Analysis {
-    /// Analyses the pattern of `matrix`, which has at least one row. `positions` says where each unknown lies: large systems are
+    /// Analyses `pattern`, which has at least one row. `positions` says where each unknown lies: large systems are
     /// then ordered by nested dissection too, and the ordering with the smaller factor is kept. If there are more unknowns than
     /// positions, they are means of many points, which no cut separates, and minimum degree it is.
     ///
     /// # Errors
     /// Status `TooLarge` if memory does not suffice.
-    pub fn new(matrix: &SymmetricMatrix, positions: &[DVec3]) -> Result<Self> {
-        let by_degree = Self::ordered(matrix, SymmetricOrdering::Amd)?;
-        let is_worth_trying = matrix.dimension >= LEAST_DISSECTED
-            && by_degree.factor_value_count() >= LEAST_FILL * matrix.dimension
-            && positions.len() == matrix.dimension;
+    pub fn new(pattern: &Pattern, positions: &[DVec3]) -> Result<Self> {
+        let by_degree = Self::ordered(pattern, SymmetricOrdering::Amd)?;
+        let is_worth_trying = pattern.dimension >= LEAST_DISSECTED
+            && by_degree.factor_value_count() >= LEAST_FILL * pattern.dimension
+            && positions.len() == pattern.dimension;
         if !is_worth_trying {
             return Ok(by_degree);
         }
-        let graph = matrix.graph();
+        let graph = pattern.graph();
         let order = nested_dissection::order(&graph, positions, &mut |unknowns| order_leaf(&graph, unknowns));
         let mut inverse = vec![0_u32; order.len()];
         (0..).zip(&order).for_each(|(k, &unknown)| inverse[unknown as usize] = k);
-        let permutation = PermRef::new_checked(&order, &inverse, matrix.dimension);
-        let dissected = Self::ordered(matrix, SymmetricOrdering::Custom(permutation))?;
+        let permutation = PermRef::new_checked(&order, &inverse, pattern.dimension);
+        let dissected = Self::ordered(pattern, SymmetricOrdering::Custom(permutation))?;
         Ok(if dissected.factor_value_count() < by_degree.factor_value_count() { dissected } else { by_degree })
     }
 
-    fn ordered(matrix: &SymmetricMatrix, ordering: SymmetricOrdering<'_, u32>) -> Result<Self> {
+    fn ordered(pattern: &Pattern, ordering: SymmetricOrdering<'_, u32>) -> Result<Self> {
         let parameters = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: ALWAYS_SUPERNODAL,
             supernodal_params: SymbolicSupernodalParams { relax: Some(&RELAX) },
             ..Default::default()
         };
-        let symbolic = factorize_symbolic_cholesky(pattern(matrix), Side::Lower, ordering, parameters);
+        let symbolic = factorize_symbolic_cholesky(columns(pattern), Side::Lower, ordering, parameters);
         Ok(Self { symbolic: symbolic.map_err(|error| too_large("the analysis", &error))? })
     }
 
@@ -250,6 +296,9 @@ pub struct Factor {
     place: Vec<u32>,
     /// `1/√` of the matrix's diagonal.
     scale: Vec<f64>,
+    /// The entries of the matrix's lower triangle as [`Lower`] has them.
+    starts: Vec<u32>,
+    entries: Vec<[u32; 2]>,
     is_singular: bool,
 }
 
@@ -260,79 +309,57 @@ impl std::fmt::Debug for Factor {
 }
 
 impl Factor {
-    /// Lays out the panels for factors of the analysed pattern.
+    /// Lays out the panels for factors of matrices with this pattern, which `analysis` is of.
     ///
     /// # Errors
     /// Status `Internal` if the analysis is not supernodal, which it always is.
-    pub fn new(analysis: &Analysis) -> Result<Self> {
+    pub fn new(analysis: &Analysis, pattern: &Pattern) -> Result<Self> {
         let symbolic = supernodal(analysis)?;
         // The number of columns ends the list of where supernodes begin.
         let mut begins = symbolic.supernode_begin().to_vec();
         begins.push(symbolic.ncols() as u32);
         let panels = Panels::new(&Supernodes { begins: &begins, rows: &|s| symbolic.supernode(s).pattern() });
         let position = panels.position();
-        let place = match analysis.symbolic.perm() {
+        let place: Vec<u32> = match analysis.symbolic.perm() {
             Some(permutation) => permutation.arrays().1.iter().map(|&i| position[i as usize]).collect(),
             None => position.to_vec(),
         };
-        Ok(Self { panels, place, scale: vec![1.0; symbolic.ncols()], is_singular: false })
+        let mut starts = vec![0_u32; pattern.dimension + 1];
+        let ends =
+            |i: u32, j: u32| (place[i as usize].min(place[j as usize]), place[i as usize].max(place[j as usize]));
+        pattern.visit(|i, j, _| starts[ends(i, j).0 as usize + 1] += 1);
+        for i in 0..pattern.dimension {
+            starts[i + 1] += starts[i];
+        }
+        let mut next = starts.clone();
+        let mut entries = vec![[0; 2]; pattern.rows.len()];
+        pattern.visit(|i, j, k| {
+            let (column, row) = ends(i, j);
+            let place = &mut next[column as usize];
+            entries[*place as usize] = [row, k as u32];
+            *place += 1;
+        });
+        Ok(Self { panels, scale: vec![1.0; place.len()], place, starts, entries, is_singular: false })
     }
 
-    /// Factorises `matrix`, whose pattern `analysis` is of and whose diagonal is above 0. Where a row depends on others
-    /// within round-off, [`Self::is_singular`] says so and the factor is of no use.
+    /// Factorises `matrix`, whose diagonal is above 0; in parallel on the current rayon pool if `is_parallel`, with the same
+    /// bits. Where a row depends on others within round-off, [`Self::is_singular`] says so and the factor is of no use.
     ///
     /// # Errors
-    /// Status `InvalidValue` if the matrix is not finite; `Internal` if it is so singular that there is no factor at all,
-    /// which [`Self::is_singular`] says too.
-    pub fn factorise(&mut self, analysis: &Analysis, matrix: &SymmetricMatrix) -> Result<()> {
-        for (i, scale) in self.scale.iter_mut().enumerate() {
-            *scale = 1.0 / matrix.diagonal(i).sqrt();
+    /// Status `InvalidValue` if the matrix is not finite; `TooLarge` if memory does not suffice.
+    pub fn factorise(&mut self, matrix: &SymmetricMatrix, is_parallel: bool) -> Result<()> {
+        let mut scale = vec![0.0; matrix.dimension()];
+        for (i, &place) in self.place.iter().enumerate() {
+            self.scale[i] = 1.0 / matrix.diagonal(i).sqrt();
+            scale[place as usize] = self.scale[i];
         }
-        let mut scaled = Vec::with_capacity(matrix.values.len());
-        for j in 0..matrix.dimension {
-            for k in matrix.column_starts[j] as usize..matrix.column_starts[j + 1] as usize {
-                scaled.push(matrix.values[k] * self.scale[j] * self.scale[matrix.rows[k] as usize]);
-            }
-        }
-        self.is_singular = false;
-        if !scaled.iter().all(|value| value.is_finite()) {
+        let lower = Lower { starts: &self.starts, entries: &self.entries, values: &matrix.values, scale: &scale };
+        let outcome = self.panels.factorise(&lower, singular_pivot(matrix.dimension()), multiply, is_parallel);
+        let outcome = outcome.map_err(|error| too_large("the factor", &error))?;
+        self.is_singular = outcome.is_finite && outcome.is_singular;
+        if !outcome.is_finite {
             return Err(Error::new(Status::InvalidValue, "the weights are too far apart for the system to be finite"));
         }
-        let regularization = LltRegularization {
-            dynamic_regularization_delta: REPLACED_PIVOT,
-            dynamic_regularization_epsilon: singular_pivot(matrix.dimension),
-        };
-        let symbolic = supernodal(analysis)?;
-        let count = analysis.factor_value_count();
-        let mut values = Vec::new();
-        values.try_reserve_exact(count).map_err(|error| too_large("the factor", &error))?;
-        values.resize(count, 0.0);
-        let scratch = analysis.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        let mut scratch = MemBuffer::try_new(scratch).map_err(|error| too_large("factorising", &error))?;
-        let outcome = analysis.symbolic.factorize_numeric_llt(
-            &mut values,
-            SparseColMatRef::new(pattern(matrix), &scaled),
-            Side::Lower,
-            regularization,
-            Par::Seq,
-            MemStack::new(&mut scratch),
-            Default::default(),
-        );
-        // Several vanishing pivots can lead to numbers beyond all bounds, where faer gives up.
-        self.is_singular = outcome.is_err();
-        outcome.map_err(|error| Error::new(Status::Internal, format!("factorisation failed: {error:?}")))?;
-        // faer divides by the root of what it puts in the place of a vanishing pivot, but leaves the pivot's own quotient.
-        let diagonal = |s: usize| {
-            let (start, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
-            let width = (end - start) as usize;
-            let stride = width + symbolic.supernode(s).pattern().len();
-            let first = symbolic.col_ptr_for_val()[s] as usize;
-            (0..width).map(move |i| first + i * (stride + 1))
-        };
-        let mut pivots = (0..symbolic.n_supernodes()).flat_map(diagonal).map(|i| values[i]);
-        self.is_singular = pivots.any(|root| root * root <= singular_pivot(matrix.dimension));
-        let starts = symbolic.col_ptr_for_val();
-        self.panels.fill(|s| &values[starts[s] as usize..starts[s + 1] as usize]);
         Ok(())
     }
 
@@ -346,7 +373,7 @@ impl Factor {
         self.panels.byte_count()
     }
 
-    /// Where each unknown of the matrix lies in [`Self::rows_mut`].
+    /// Where each unknown of the matrix lies in [`Self::rows`].
     pub fn place(&self) -> &[u32] {
         &self.place
     }
@@ -361,9 +388,9 @@ impl Factor {
         self.panels.unknowns()
     }
 
-    /// The rows, to be written.
-    pub fn rows_mut(&mut self) -> &mut [Lanes] {
-        self.panels.unknowns_mut()
+    /// The rows, to be written, and the scale.
+    pub fn rows_mut_and_scale(&mut self) -> (&mut [Lanes], &[f64]) {
+        (self.panels.unknowns_mut(), &self.scale)
     }
 
     /// Solves for x, y and z in one pass, on the current rayon pool if `is_parallel`, the same bits either way. Allocates
@@ -414,8 +441,31 @@ fn supernodal(analysis: &Analysis) -> Result<&SymbolicSupernodalCholesky<u32>> {
     }
 }
 
-fn pattern(matrix: &SymmetricMatrix) -> SymbolicSparseColMatRef<'_, u32> {
-    SymbolicSparseColMatRef::new_checked(matrix.dimension, matrix.dimension, &matrix.column_starts, None, &matrix.rows)
+fn columns(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, u32> {
+    let n = pattern.dimension;
+    SymbolicSparseColMatRef::new_checked(n, n, &pattern.column_starts, None, &pattern.rows)
+}
+
+/// The products of a factorisation that are large enough for all the care that faer takes.
+fn multiply(product: Product<'_>) {
+    let Product { target, target_stride, rows, columns, left, left_stride, inner } = product;
+    let target = MatMut::from_column_major_slice_with_stride_mut(target, rows, columns, target_stride);
+    let left = MatRef::from_column_major_slice_with_stride(left, rows, inner, left_stride);
+    let (triangle, below) = target.split_at_row_mut(columns);
+    let (top, bottom) = left.split_at_row(columns);
+    let full = BlockStructure::Rectangular;
+    triangular::matmul(
+        triangle,
+        BlockStructure::TriangularLower,
+        Accum::Add,
+        top,
+        full,
+        top.transpose(),
+        full,
+        -1.0,
+        Par::Seq,
+    );
+    matmul(below, Accum::Add, bottom, top.transpose(), -1.0, Par::Seq);
 }
 
 fn too_large(what: &str, error: &dyn std::fmt::Debug) -> Error {
@@ -440,9 +490,9 @@ mod tests {
             }
         }
         assert!(!matrix.add(0, 5, 1.0));
-        let analysis = Analysis::new(&matrix, &[]).unwrap();
-        let mut factor = Factor::new(&analysis).unwrap();
-        factor.factorise(&analysis, &matrix).unwrap();
+        let analysis = Analysis::new(matrix.pattern(), &[]).unwrap();
+        let mut factor = Factor::new(&analysis, matrix.pattern()).unwrap();
+        factor.factorise(&matrix, false).unwrap();
         assert!(!factor.is_singular());
         let mut x = vec![DVec3::ZERO; n as usize];
         x[n as usize - 1] = DVec3::new(1.0, -2.0, 1e-6);
@@ -485,9 +535,9 @@ mod tests {
             for stiffness in [1e-8, 1.0, 3e8] {
                 for (held, is_singular) in [(0.0, true), (1e-3 * stiffness, false)] {
                     let matrix = grid(n, stiffness, held);
-                    let analysis = Analysis::new(&matrix, &[]).unwrap();
-                    let mut factor = Factor::new(&analysis).unwrap();
-                    factor.factorise(&analysis, &matrix).unwrap();
+                    let analysis = Analysis::new(matrix.pattern(), &[]).unwrap();
+                    let mut factor = Factor::new(&analysis, matrix.pattern()).unwrap();
+                    factor.factorise(&matrix, false).unwrap();
                     assert_eq!(factor.is_singular(), is_singular, "{n} × {n}, stiffness {stiffness}, held by {held}");
                 }
             }
@@ -516,16 +566,45 @@ mod tests {
     #[test]
     fn dissecting_a_block_makes_a_smaller_factor_that_solves_as_well() {
         let (matrix, positions) = block(28);
-        let by_degree = Analysis::new(&matrix, &[]).unwrap();
-        let dissected = Analysis::new(&matrix, &positions).unwrap();
+        let by_degree = Analysis::new(matrix.pattern(), &[]).unwrap();
+        let dissected = Analysis::new(matrix.pattern(), &positions).unwrap();
         assert!(dissected.factor_value_count() < by_degree.factor_value_count(), "{dissected:?}, {by_degree:?}");
-        let mut factor = Factor::new(&dissected).unwrap();
-        factor.factorise(&dissected, &matrix).unwrap();
+        let mut factor = Factor::new(&dissected, matrix.pattern()).unwrap();
+        factor.factorise(&matrix, false).unwrap();
         let mut x = positions.clone();
         factor.solve(&mut x, false);
         let mut image = positions.clone();
         matrix.multiply(&x, &mut image);
         assert!(image.iter().zip(&positions).all(|(a, b)| a.distance(*b) < 1e-12));
+        // Its fronts are large enough to be shared by threads.
+        for thread_count in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().unwrap();
+            pool.install(|| factor.factorise(&matrix, true)).unwrap();
+            let mut other = positions.clone();
+            factor.solve(&mut other, false);
+            assert!(other == x, "other bits on {thread_count} threads");
+        }
+    }
+
+    #[test]
+    fn large_products_are_what_is_defined() {
+        let (rows, columns, inner, stride) = (12, 8, 5, 13);
+        let numbers = |count: usize| (0..count).map(|i| (i * i % 31) as f64).collect::<Vec<f64>>();
+        let (left, before) = (numbers(stride * inner), numbers(stride * columns));
+        let mut target = before.clone();
+        multiply(Product {
+            target: &mut target,
+            target_stride: stride,
+            rows,
+            columns,
+            left: &left,
+            left_stride: stride,
+            inner,
+        });
+        for (i, j) in (0..columns).flat_map(|j| (j..rows).map(move |i| (i, j))) {
+            let sum: f64 = (0..inner).map(|k| left[k * stride + i] * left[k * stride + j]).sum();
+            assert_eq!(target[j * stride + i], before[j * stride + i] - sum);
+        }
     }
 
     #[test]
@@ -533,9 +612,9 @@ mod tests {
         // The largest is cut into parts.
         for n in [3, 30, 120] {
             let matrix = grid(n, 1.0, 1.0);
-            let analysis = Analysis::new(&matrix, &[]).unwrap();
-            let mut factor = Factor::new(&analysis).unwrap();
-            factor.factorise(&analysis, &matrix).unwrap();
+            let analysis = Analysis::new(matrix.pattern(), &[]).unwrap();
+            let mut factor = Factor::new(&analysis, matrix.pattern()).unwrap();
+            factor.factorise(&matrix, false).unwrap();
             let count = (n * n) as usize;
             let right: Vec<DVec3> =
                 (0..count).map(|i| DVec3::new((i % 7) as f64 - 3.0, (i % 11) as f64 - 5.0, (i % 3) as f64)).collect();
@@ -548,6 +627,7 @@ mod tests {
             assert!(residual < 1e-13 * largest, "{n} × {n}: residual {residual:e} at a solution of {largest:e}");
             for thread_count in [1, 2, 7] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().unwrap();
+                pool.install(|| factor.factorise(&matrix, true)).unwrap();
                 let mut other = right.clone();
                 pool.install(|| factor.solve(&mut other, true));
                 assert!(other == x, "{n} × {n}: other bits on {thread_count} threads");

@@ -318,9 +318,9 @@ mod tests {
 
     /// Solutions of the factor and of conjugate gradients, and how many iterations those took.
     fn both(matrix: &SymmetricMatrix, right: &[DVec3], start: &[DVec3]) -> (Vec<DVec3>, Vec<DVec3>, u64) {
-        let analysis = Analysis::new(matrix, &[]).unwrap();
-        let mut factor = Factor::new(&analysis).unwrap();
-        factor.factorise(&analysis, matrix).unwrap();
+        let analysis = Analysis::new(matrix.pattern(), &[]).unwrap();
+        let mut factor = Factor::new(&analysis, matrix.pattern()).unwrap();
+        factor.factorise(matrix, false).unwrap();
         let (mut direct, mut iterative) = (right.to_vec(), right.to_vec());
         factor.solve(&mut direct, false);
         let mut gradients = ConjugateGradients::new(matrix).unwrap();

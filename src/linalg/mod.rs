@@ -2,6 +2,7 @@
 
 pub mod cholesky;
 pub mod conjugate_gradients;
+mod fronts;
 pub mod lanes;
 mod multilevel;
 mod nested_dissection;

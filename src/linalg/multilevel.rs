@@ -214,10 +214,10 @@ fn factor(matrix: &SparseRows) -> Result<Option<(Factor, Vec<DVec3>)>> {
     let mut symmetric = SymmetricMatrix::with_pattern(n, |report| each(&mut |i, j, _| report(i, j)))?;
     let mut is_whole = true;
     each(&mut |i, j, value| is_whole &= symmetric.add(i, j, value));
-    let analysis = Analysis::new(&symmetric, &[])?;
-    let mut factor = Factor::new(&analysis)?;
-    // A matrix that has no factor because it is too singular is none to solve with either.
-    let is_good = is_whole && factor.factorise(&analysis, &symmetric).is_ok() && !factor.is_singular();
+    let analysis = Analysis::new(symmetric.pattern(), &[])?;
+    let mut factor = Factor::new(&analysis, symmetric.pattern())?;
+    // A matrix that is not finite is none to solve with either.
+    let is_good = is_whole && factor.factorise(&symmetric, false).is_ok() && !factor.is_singular();
     Ok(is_good.then(|| (factor, vec![DVec3::ZERO; n])))
 }
 

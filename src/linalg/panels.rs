@@ -9,10 +9,13 @@
 //! buffer each, and the buffers are added in order. The cut depends on the factor alone, so the bits do not depend on the
 //! number of threads. Unknowns are numbered part by part, the top last.
 
+use std::collections::TryReserveError;
+
+use super::fronts::{self, Lower, Multiply, Outcome};
 use super::simd::{Kernel, Lanes, add_scaled, dispatch};
 
 /// Columns of a panel at most: as many accumulators as leave registers for the rest.
-const WIDTH: usize = 8;
+pub(super) const WIDTH: usize = 8;
 
 /// Values of the factor above which it is cut into parts.
 const LEAST_VALUES: usize = 100_000;
@@ -32,28 +35,26 @@ pub struct Supernodes<'a> {
 }
 
 /// One supernode as it lies in its part.
-struct Supernode {
-    /// Its place in elimination order.
-    source: u32,
+pub(super) struct Supernode {
     /// Its first unknown, counted from the part's first.
-    first: u32,
-    width: u32,
+    pub(super) first: u32,
+    pub(super) width: u32,
     /// Its rows below lie in [`Part::rows`]: those within the part, then those in the top.
-    rows_start: u32,
-    rows_top: u32,
-    rows_end: u32,
+    pub(super) rows_start: u32,
+    pub(super) rows_top: u32,
+    pub(super) rows_end: u32,
 }
 
 /// Supernodes that are solved one after the other.
 #[derive(Default)]
-struct Part {
+pub(super) struct Part {
     /// The number of its unknowns.
-    length: usize,
-    supernodes: Vec<Supernode>,
+    pub(super) length: usize,
+    pub(super) supernodes: Vec<Supernode>,
     /// Counted from the part's first unknown, or from the top's first.
-    rows: Vec<u32>,
-    value_count: usize,
-    values: Vec<f64>,
+    pub(super) rows: Vec<u32>,
+    pub(super) value_count: usize,
+    pub(super) values: Vec<f64>,
 }
 
 /// The factor in panels, with the memory that solving needs.
@@ -69,7 +70,7 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Cuts the pattern into parts. Values come with [`Self::fill`].
+    /// Cuts the pattern into parts. Values come with [`Self::factorise`].
     pub fn new(supernodes: &Supernodes<'_>) -> Self {
         let count = supernodes.begins.len() - 1;
         let dimension = supernodes.begins[count] as usize;
@@ -105,7 +106,6 @@ impl Panels {
             let rows_start = part.rows.len();
             part.rows.extend(rows.iter().map(|&row| local[row as usize]));
             part.supernodes.push(Supernode {
-                source: s as u32,
                 first: local[begin as usize],
                 width: end - begin,
                 rows_start: rows_start as u32,
@@ -140,33 +140,15 @@ impl Panels {
         &mut self.x
     }
 
-    /// Takes over a factor. `block(s)` are the values of supernode `s`, column by column: its diagonal block (only the lower
-    /// triangle counts) above its rows.
-    pub fn fill<'a>(&mut self, block: impl Fn(usize) -> &'a [f64]) {
-        for part in &mut self.parts {
-            let mut values = std::mem::take(&mut part.values);
-            values.clear();
-            values.reserve_exact(part.value_count);
-            for supernode in &part.supernodes {
-                let (width, below) = (supernode.width as usize, (supernode.rows_end - supernode.rows_start) as usize);
-                let source = block(supernode.source as usize);
-                let stride = width + below;
-                for first in (0..width).step_by(WIDTH) {
-                    let end = (first + WIDTH).min(width);
-                    push_inverse(first, end, &|row, column| source[column * stride + row], &mut values);
-                    // Below the block: row by row out of the columns.
-                    let rows = stride - end;
-                    let start = values.len();
-                    values.resize(start + rows * (end - first), 0.0);
-                    for (c, column) in (first..end).enumerate() {
-                        let from = &source[column * stride + end..(column + 1) * stride];
-                        let to = values[start..].iter_mut().skip(c).step_by(end - first);
-                        to.zip(from).for_each(|(to, from)| *to = *from);
-                    }
-                }
-            }
-            part.values = values;
-        }
+    /// Factorises `lower`; see [`fronts::factorise`].
+    pub fn factorise(
+        &mut self,
+        lower: &Lower<'_>,
+        least_pivot: f64,
+        multiply: Multiply,
+        is_parallel: bool,
+    ) -> Result<Outcome, TryReserveError> {
+        fronts::factorise(&mut self.parts, lower, least_pivot, multiply, is_parallel)
     }
 
     /// Solves in place; the parts on the current rayon pool if `is_parallel`. Allocates nothing.
@@ -198,22 +180,6 @@ fn value_count(width: usize, below: usize) -> usize {
         (end - first) * (end - first + width - end + below)
     };
     (0..width).step_by(WIDTH).map(panel).sum()
-}
-
-/// Appends the inverse of the lower triangular diagonal block of columns `first..end`, row by row, zeros included.
-fn push_inverse(first: usize, end: usize, at: &impl Fn(usize, usize) -> f64, values: &mut Vec<f64>) {
-    let width = end - first;
-    let mut inverse = [[0.0; WIDTH]; WIDTH];
-    for j in 0..width {
-        inverse[j][j] = 1.0 / at(first + j, first + j);
-        for i in j + 1..width {
-            let sum: f64 = (j..i).map(|k| at(first + i, first + k) * inverse[k][j]).sum();
-            inverse[i][j] = -sum / at(first + i, first + i);
-        }
-    }
-    for row in &inverse[..width] {
-        values.extend_from_slice(&row[..width]);
-    }
 }
 
 /// The part of every supernode, subtrees of about equal work and the top, and the number of the top, which is the last.
@@ -314,6 +280,8 @@ macro_rules! with_width {
         }
     };
 }
+
+pub(super) use with_width;
 
 impl Kernel for Forward<'_> {
     type Output = ();
@@ -451,32 +419,41 @@ mod tests {
     const BEGINS: [u32; 4] = [0, 3, 14, 20];
     const ROWS: [&[u32]; 3] = [&[14, 16, 19], &[15, 16, 17, 18], &[]];
 
-    /// A factor with this pattern, column by column within each supernode, and the same as a dense matrix.
-    fn factor() -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    /// A dense factor with this pattern.
+    fn factor() -> Vec<Vec<f64>> {
         let mut dense = vec![vec![0.0; 20]; 20];
-        let mut blocks = Vec::new();
         for s in 0..3 {
             let (begin, end) = (BEGINS[s] as usize, BEGINS[s + 1] as usize);
-            let rows: Vec<usize> = (begin..end).chain(ROWS[s].iter().map(|&row| row as usize)).collect();
-            let mut block = Vec::new();
+            let rows = || (begin..end).chain(ROWS[s].iter().map(|&row| row as usize));
             for column in begin..end {
-                for &row in &rows {
-                    let value = if row == column { 2.0 } else { ((7 * row + 13 * column) % 11) as f64 / 11.0 - 0.5 };
-                    if row >= column {
-                        dense[row][column] = value;
-                    }
-                    block.push(value);
+                for row in rows().filter(|&row| row >= column) {
+                    dense[row][column] =
+                        if row == column { 2.0 } else { ((7 * row + 13 * column) % 11) as f64 / 11.0 - 0.5 };
                 }
             }
-            blocks.push(block);
         }
-        (blocks, dense)
+        dense
     }
 
     fn panels() -> (Panels, Vec<Vec<f64>>) {
-        let (blocks, dense) = factor();
+        let dense = factor();
         let mut panels = Panels::new(&Supernodes { begins: &BEGINS, rows: &|s| ROWS[s] });
-        panels.fill(|s| &blocks[s]);
+        // Everything is in one part, in the order of elimination. Rows and columns are scaled by two.
+        let (mut starts, mut entries, mut values) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..20 {
+            for i in j..20 {
+                let value = (0..20).map(|k| dense[i][k] * dense[j][k]).sum::<f64>() / 4.0;
+                if value != 0.0 {
+                    entries.push([i as u32, values.len() as u32]);
+                    values.push(value);
+                }
+            }
+            starts.push(entries.len() as u32);
+        }
+        let scale = [2.0; 20];
+        let lower = Lower { starts: &starts, entries: &entries, values: &values, scale: &scale };
+        let outcome = panels.factorise(&lower, 1e-13, |_| unreachable!("no product is large"), false).unwrap();
+        assert!(outcome.is_finite && !outcome.is_singular);
         (panels, dense)
     }
 
@@ -512,14 +489,24 @@ mod tests {
     }
 
     #[test]
-    fn inverted_blocks_are_inverse() {
-        let (_, dense) = factor();
-        let mut values = Vec::new();
-        push_inverse(3, 11, &|row, column| dense[row][column], &mut values);
-        for i in 0..8 {
-            for j in 0..8 {
-                let product: f64 = (0..8).map(|k| dense[3 + i][3 + k] * values[8 * k + j]).sum();
-                assert!((product - f64::from(u8::from(i == j))).abs() < 1e-13);
+    fn panels_hold_inverse_blocks_above_the_rows_below() {
+        // The second supernode: panels of eight and three columns.
+        let (panels, dense) = panels();
+        let values = &panels.parts[0].values[3 * (3 + 3)..];
+        let (first, second) = values.split_at(8 * (8 + 3 + 4));
+        for (block, columns, below) in [(first, 3..11, [11, 12, 13].as_slice()), (second, 11..14, &[])] {
+            let width = columns.len();
+            let at = |i: usize, j: usize| dense[columns.start + i][columns.start + j];
+            for i in 0..width {
+                for j in 0..width {
+                    let product: f64 = (0..width).map(|k| at(i, k) * block[width * k + j]).sum();
+                    assert!((product - f64::from(u8::from(i == j))).abs() < 1e-13);
+                }
+            }
+            let rows = below.iter().chain(&[15, 16, 17, 18]);
+            for (row, values) in rows.zip(block[width * width..].chunks_exact(width)) {
+                let expected = &dense[*row][columns.clone()];
+                assert!(expected.iter().zip(values).all(|(a, b)| (a - b).abs() < 1e-13), "row {row}");
             }
         }
     }

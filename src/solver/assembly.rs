@@ -7,10 +7,9 @@
 use glam::DVec3;
 
 use super::chunks::Chunk;
-use super::linear_solver::Order;
 use crate::constraints::{ConstraintSet, Rows};
 use crate::error::Result;
-use crate::linalg::cholesky::SymmetricMatrix;
+use crate::linalg::cholesky::{Pattern, SymmetricMatrix};
 use crate::linalg::simd::{Kernel, Lanes, add_scaled, dispatch, lanes, vector};
 
 /// Centred constraints of more points than this get an unknown of their own. Up to here the block has fewer entries
@@ -20,7 +19,7 @@ const LONGEST_DENSE_STENCIL: usize = 12;
 /// Points, or rows of the linear solver, in one chunk.
 const CHUNK_POINTS: usize = 1024;
 
-/// `Aᵀ` by rows of the linear solver, in its order and scale: each right-hand side as a sum over targets, in a fixed order.
+/// `Aᵀ` by rows of the linear solver, in its order: each right-hand side as a sum over targets, in a fixed order.
 #[derive(Default)]
 pub(super) struct Gather {
     starts: Vec<usize>,
@@ -30,24 +29,34 @@ pub(super) struct Gather {
     coefficients: Vec<f64>,
     /// The unknown of each row.
     unknowns: Vec<u32>,
-    /// What terms of a row's unknown that are not in `Aᵀ` are multiplied by.
-    scale: Vec<f64>,
     /// Where the chunks of rows begin, and the number of rows.
     pub(super) bounds: Vec<usize>,
 }
 
+/// What right-hand sides have besides the targets' part, by unknowns.
+#[derive(Clone, Copy)]
+pub(super) struct Terms<'a> {
+    /// One entry per point, or none.
+    pub(super) external: &'a [DVec3],
+    /// How strongly each point is pulled towards where it is now; one entry per point, or none.
+    pub(super) pulls: &'a [f64],
+    pub(super) points: &'a [DVec3],
+    /// What the whole is multiplied by.
+    pub(super) scale: &'a [f64],
+}
+
 impl Gather {
-    /// `bounds` says where the targets of each chunk begin.
+    /// `place` is that of each unknown among the rows; `bounds` says where the targets of each chunk begin.
     pub(super) fn new(
         constraints: &ConstraintSet,
         stiffness: &[Vec<f64>],
         chunks: &[Chunk],
         bounds: &[usize],
-        order: Order<'_>,
+        place: &[u32],
     ) -> Self {
         let targets_of = (constraints, chunks, bounds);
-        let row_count = order.place.len();
-        let row = |unknown: u32| order.place[unknown as usize] as usize;
+        let row_count = place.len();
+        let row = |unknown: u32| place[unknown as usize] as usize;
         let mut starts = vec![0_usize; row_count + 1];
         each_target(targets_of, stiffness, |point, _, _| starts[row(point) + 1] += 1);
         for i in 0..row_count {
@@ -58,14 +67,12 @@ impl Gather {
         let mut coefficients = vec![0.0; starts[row_count]];
         each_target(targets_of, stiffness, |point, target, coefficient| {
             let place = &mut next[row(point)];
-            (targets[*place], coefficients[*place]) = (target, coefficient * order.scale[point as usize]);
+            (targets[*place], coefficients[*place]) = (target, coefficient);
             *place += 1;
         });
-        let (mut unknowns, mut scale) = (vec![0; row_count], vec![0.0; row_count]);
-        for (unknown, (&place, &factor)) in (0..).zip(order.place.iter().zip(order.scale)) {
-            (unknowns[place as usize], scale[place as usize]) = (unknown, factor);
-        }
-        Self { starts, targets, coefficients, unknowns, scale, bounds: even_bounds(row_count) }
+        let mut unknowns = vec![0; row_count];
+        (0..).zip(place).for_each(|(unknown, &place)| unknowns[place as usize] = unknown);
+        Self { starts, targets, coefficients, unknowns, bounds: even_bounds(row_count) }
     }
 
     /// The number of entries.
@@ -78,26 +85,18 @@ impl Gather {
         size_of_val(&*self.starts) + size_of_val(&*self.targets) + size_of_val(&*self.coefficients)
     }
 
-    /// Writes the rows from `first` on: the sums of `targets`, plus the terms of their points. `external` and `pulls` have
-    /// one entry per point, or none at all; a pull is towards where its point is now.
-    pub(super) fn write_rows(
-        &self,
-        first: usize,
-        rows: &mut [Lanes],
-        targets: &[DVec3],
-        external: &[DVec3],
-        pulls: &[f64],
-        points: &[DVec3],
-    ) {
-        dispatch(WriteRows { gather: self, first, rows: &mut *rows, targets });
+    /// Writes the rows from `first` on: the sums of `targets`, and the terms.
+    pub(super) fn write_rows(&self, first: usize, rows: &mut [Lanes], targets: &[DVec3], terms: Terms<'_>) {
+        dispatch(WriteRows { gather: self, first, rows: &mut *rows, targets, scale: terms.scale });
+        let Terms { external, pulls, points, scale } = terms;
         if external.is_empty() && pulls.is_empty() {
             return;
         }
-        for (i, row) in (first..).zip(rows) {
-            let unknown = self.unknowns[i] as usize;
+        for (row, &unknown) in rows.iter_mut().zip(&self.unknowns[first..]) {
+            let unknown = unknown as usize;
             let external = external.get(unknown).copied().unwrap_or_default();
             let pull = pulls.get(unknown).map_or(DVec3::ZERO, |pull| *pull * points[unknown]);
-            *row = lanes(vector(*row) + self.scale[i] * (external + pull));
+            *row = lanes(vector(*row) + scale[unknown] * (external + pull));
         }
     }
 }
@@ -114,6 +113,7 @@ struct WriteRows<'a> {
     first: usize,
     rows: &'a mut [Lanes],
     targets: &'a [DVec3],
+    scale: &'a [f64],
 }
 
 impl Kernel for WriteRows<'_> {
@@ -121,13 +121,14 @@ impl Kernel for WriteRows<'_> {
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        let Self { gather, first, rows, targets } = self;
+        let Self { gather, first, rows, targets, scale } = self;
         for (i, row) in (first..).zip(rows) {
             let entries = gather.starts[i]..gather.starts[i + 1];
             let pairs = gather.targets[entries.clone()].iter().zip(&gather.coefficients[entries]);
-            *row = pairs.fold([0.0; 4], |sum, (&target, &coefficient)| {
+            let sum = pairs.fold([0.0; 4], |sum, (&target, &coefficient)| {
                 add_scaled::<FMA>(sum, coefficient, lanes(targets[target as usize]))
             });
+            *row = sum.map(|sum| scale[gather.unknowns[i] as usize] * sum);
         }
     }
 }
@@ -227,15 +228,15 @@ pub(super) fn new_pattern(
     })
 }
 
-/// Assembles the constraints' part of `N`. False if the pattern does not cover it.
+/// Assembles the constraints' part of `N` into `values`. False if the pattern does not cover it.
 pub(super) fn fill(
-    matrix: &mut SymmetricMatrix,
+    (pattern, values): (&Pattern, &mut [f64]),
     constraints: &ConstraintSet,
     stiffness: &[Vec<f64>],
     point_count: usize,
 ) -> bool {
-    matrix.clear();
+    values.fill(0.0);
     let mut is_covered = true;
-    each_entry(constraints, Some(stiffness), point_count, |i, j, value| is_covered &= matrix.add(i, j, value));
+    each_entry(constraints, Some(stiffness), point_count, |i, j, value| is_covered &= pattern.add(values, i, j, value));
     is_covered
 }

@@ -6,11 +6,12 @@
 use glam::DVec3;
 
 use crate::error::{Error, Result, Status};
-use crate::linalg::cholesky::{Analysis, Factor, SymmetricMatrix};
+use crate::linalg::cholesky::{Analysis, Factor, Pattern, SymmetricMatrix};
 use crate::linalg::conjugate_gradients::ConjugateGradients;
 use crate::linalg::simd::Lanes;
 
-/// A value of the factor while it is computed: one in the order of the factorisation and one in that of the solves.
+/// A value of the factor while it is computed: itself, and at most as much again for the fronts, which blocks of tetrahedra come
+/// near.
 const BYTES_PER_VALUE: u64 = 16;
 
 /// The most bytes that `Automatic` spends on a factor: a third of the 6 GB that a large model may take, as the model, the
@@ -48,13 +49,10 @@ pub(super) struct LinearSystem {
 }
 
 enum Kind {
-    Direct {
-        analysis: Analysis,
-        factor: Factor,
-    },
+    Direct(Box<Factor>),
     Iterative {
         /// `None` before the first matrix.
-        gradients: Option<ConjugateGradients>,
+        gradients: Option<Box<ConjugateGradients>>,
         rows: Vec<Lanes>,
         /// The matrix's own order and scale.
         place: Vec<u32>,
@@ -71,24 +69,19 @@ pub(super) struct Order<'a> {
 }
 
 impl LinearSystem {
-    /// Chooses for the pattern of `matrix`, whose first unknowns lie at `positions`. `largest_bytes` is
+    /// Chooses for `pattern`, whose first unknowns lie at `positions`. `largest_bytes` is
     /// [`LARGEST_FACTOR_BYTES`] but in tests.
-    pub(super) fn new(
-        matrix: &SymmetricMatrix,
-        positions: &[DVec3],
-        wish: LinearSolver,
-        largest_bytes: u64,
-    ) -> Result<Self> {
+    pub(super) fn new(pattern: &Pattern, positions: &[DVec3], wish: LinearSolver, largest_bytes: u64) -> Result<Self> {
         let made = |kind, reason| Ok(Self { wish, kind, reason, counts_before: [0; 2] });
         let iterative = || {
-            let n = matrix.dimension();
+            let n = pattern.dimension();
             let (rows, place, scale) = (vec![[0.0; 4]; n], (0..n as u32).collect(), vec![1.0; n]);
             Kind::Iterative { gradients: None, rows, place, scale }
         };
         if wish == LinearSolver::ConjugateGradients {
             return made(iterative(), "as asked for".to_owned());
         }
-        let analysis = match Analysis::new(matrix, positions) {
+        let analysis = match Analysis::new(pattern, positions) {
             Ok(analysis) => analysis,
             // The pattern of the factor alone is beyond 32-bit indices or the memory.
             Err(error) if error.status() == Status::TooLarge && wish == LinearSolver::Automatic => {
@@ -106,18 +99,17 @@ impl LinearSystem {
             LinearSolver::Direct => "as asked for".to_owned(),
             _ => format!("computing the factor takes {}, at most {}", megabytes(bytes), megabytes(largest_bytes)),
         };
-        let factor = Factor::new(&analysis)?;
-        made(Kind::Direct { analysis, factor }, reason)
+        made(Kind::Direct(Box::new(Factor::new(&analysis, pattern)?)), reason)
     }
 
-    /// Prepares for solving with `matrix`, whose diagonal is above 0.
-    pub(super) fn prepare(&mut self, matrix: &SymmetricMatrix) -> Result<()> {
+    /// Prepares for solving with `matrix`, whose diagonal is above 0; on the current rayon pool if `is_parallel`.
+    pub(super) fn prepare(&mut self, matrix: &SymmetricMatrix, is_parallel: bool) -> Result<()> {
         match &mut self.kind {
-            Kind::Direct { analysis, factor } => factor.factorise(analysis, matrix),
+            Kind::Direct(factor) => factor.factorise(matrix, is_parallel),
             Kind::Iterative { gradients, .. } => {
                 // The last one's memory is free before the next one takes its own.
                 *gradients = None;
-                *gradients = Some(ConjugateGradients::new(matrix)?);
+                *gradients = Some(Box::new(ConjugateGradients::new(matrix)?));
                 self.counts_before = [0; 2];
                 Ok(())
             }
@@ -135,17 +127,17 @@ impl LinearSystem {
     /// can resolve.
     pub(super) fn is_singular(&mut self) -> bool {
         match &mut self.kind {
-            Kind::Direct { factor, .. } => factor.is_singular(),
+            Kind::Direct(factor) => factor.is_singular(),
             Kind::Iterative { gradients, .. } => {
                 gradients.as_mut().is_some_and(|gradients| gradients.is_singular(false))
             }
         }
     }
 
-    /// The order and scale of the rows; they change with [`Self::prepare`].
+    /// The order and scale of the rows; the scale changes with [`Self::prepare`].
     pub(super) fn order(&self) -> Order<'_> {
         match &self.kind {
-            Kind::Direct { factor, .. } => Order { place: factor.place(), scale: factor.scale() },
+            Kind::Direct(factor) => Order { place: factor.place(), scale: factor.scale() },
             Kind::Iterative { place, scale, .. } => Order { place, scale },
         }
     }
@@ -153,30 +145,30 @@ impl LinearSystem {
     /// Right-hand sides before, solutions after [`Self::solve`], both scaled.
     pub(super) fn rows(&self) -> &[Lanes] {
         match &self.kind {
-            Kind::Direct { factor, .. } => factor.rows(),
+            Kind::Direct(factor) => factor.rows(),
             Kind::Iterative { rows, .. } => rows,
         }
     }
 
-    /// The rows, to be written.
-    pub(super) fn rows_mut(&mut self) -> &mut [Lanes] {
+    /// The rows, to be written, and the scale.
+    pub(super) fn rows_mut_and_scale(&mut self) -> (&mut [Lanes], &[f64]) {
         match &mut self.kind {
-            Kind::Direct { factor, .. } => factor.rows_mut(),
-            Kind::Iterative { rows, .. } => rows,
+            Kind::Direct(factor) => factor.rows_mut_and_scale(),
+            Kind::Iterative { rows, scale, .. } => (rows, scale),
         }
     }
 
     /// The row of one unknown, to be given its right-hand side.
     pub(super) fn row_mut(&mut self, unknown: usize) -> (&mut Lanes, f64) {
-        let Order { place, scale } = self.order();
-        let (place, scale) = (place[unknown] as usize, scale[unknown]);
-        (&mut self.rows_mut()[place], scale)
+        let place = self.order().place[unknown] as usize;
+        let (rows, scale) = self.rows_mut_and_scale();
+        (&mut rows[place], scale[unknown])
     }
 
     /// Solves in the rows. Conjugate gradients begin at `start`, which may be shorter than the matrix.
     pub(super) fn solve(&mut self, start: &[DVec3], is_parallel: bool) {
         match &mut self.kind {
-            Kind::Direct { factor, .. } => factor.solve_rows(is_parallel),
+            Kind::Direct(factor) => factor.solve_rows(is_parallel),
             Kind::Iterative { gradients: Some(gradients), rows, .. } => gradients.solve(rows, start, is_parallel),
             Kind::Iterative { gradients: None, .. } => {}
         }
@@ -185,7 +177,7 @@ impl LinearSystem {
     /// `Direct` or `ConjugateGradients`.
     pub(super) fn used(&self) -> LinearSolver {
         match &self.kind {
-            Kind::Direct { .. } => LinearSolver::Direct,
+            Kind::Direct(_) => LinearSolver::Direct,
             Kind::Iterative { .. } => LinearSolver::ConjugateGradients,
         }
     }
@@ -193,7 +185,7 @@ impl LinearSystem {
     /// Bytes of the factor as it is stored; `None` without one.
     pub(super) fn factor_byte_count(&self) -> Option<usize> {
         match &self.kind {
-            Kind::Direct { factor, .. } => Some(factor.byte_count()),
+            Kind::Direct(factor) => Some(factor.byte_count()),
             Kind::Iterative { .. } => None,
         }
     }
@@ -251,7 +243,7 @@ mod tests {
         let chain = |report: &mut dyn FnMut(u32, u32)| (1..100).for_each(|i| report(i, i - 1));
         let mut matrix = SymmetricMatrix::with_pattern(100, chain).unwrap();
         (0..100).for_each(|i| *matrix.diagonal_mut(i) = 1.0);
-        let bytes = 16 * Analysis::new(&matrix, &[]).unwrap().factor_value_count() as u64;
+        let bytes = 16 * Analysis::new(matrix.pattern(), &[]).unwrap().factor_value_count() as u64;
         for (wish, bound, expected, word) in [
             (LinearSolver::Automatic, LARGEST_FACTOR_BYTES, LinearSolver::Direct, "at most 2000.0 MB"),
             (LinearSolver::Automatic, bytes, LinearSolver::Direct, "at most"),
@@ -259,10 +251,10 @@ mod tests {
             (LinearSolver::Direct, 0, LinearSolver::Direct, "as asked for"),
             (LinearSolver::ConjugateGradients, u64::MAX, LinearSolver::ConjugateGradients, "as asked for"),
         ] {
-            let mut system = LinearSystem::new(&matrix, &[], wish, bound).unwrap();
+            let mut system = LinearSystem::new(matrix.pattern(), &[], wish, bound).unwrap();
             assert_eq!(system.used(), expected);
             assert!(system.reason().contains(word), "{}", system.reason());
-            system.prepare(&matrix).unwrap();
+            system.prepare(&matrix, false).unwrap();
             assert!(!system.is_singular());
             for unknown in 0..100 {
                 let (row, scale) = system.row_mut(unknown);

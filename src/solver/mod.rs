@@ -35,6 +35,9 @@ use system::{System, SystemCounts};
 /// Iterations without a lower energy or a smaller largest move after which a solve is called stalled.
 pub const STALL_ITERATIONS: u32 = 100;
 
+/// Points from which on a system is made on more than one thread.
+const PARALLEL_POINTS: usize = 4096;
+
 /// What a caller's progress function answers.
 pub type ProgressFn<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
 
@@ -426,8 +429,15 @@ impl Solver {
             self.constraints.compact();
             let inertia = if dynamics.mode == Mode::Dynamic { dynamics.inertia() } else { 0.0 };
             let previous = self.outdated_system.take();
-            let (points, wish) = (&self.points, self.linear_solver);
-            self.system = Some(System::new(&self.constraints, points, inertia, wish, previous, &mut self.counts)?);
+            let is_long = self.thread_count != 1 && self.points.len() >= PARALLEL_POINTS;
+            let pool = if is_long { self.pool() } else { None };
+            let (points, wish, counts) = (&self.points, self.linear_solver, &mut self.counts);
+            let is_parallel = pool.is_some();
+            let make = || System::new(&self.constraints, points, inertia, wish, previous, counts, is_parallel);
+            self.system = Some(match pool {
+                Some(pool) => pool.install(make)?,
+                None => make()?,
+            });
         }
         Ok(())
     }

@@ -21,6 +21,15 @@ pub(super) fn for_parts<T: Send, R: Send>(
     }
 }
 
+/// Both results; the work for them on two threads of the current rayon pool if `is_parallel`.
+pub(super) fn both<A: Send, B: Send>(
+    is_parallel: bool,
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if is_parallel { rayon::join(first, second) } else { (first(), second()) }
+}
+
 fn split<T: Send, R: Send>(
     first: usize,
     bounds: &[usize],

@@ -16,11 +16,11 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::assembly::{Gather, even_bounds, fill, long_constraint_count, new_pattern};
+use super::assembly::{Gather, Terms, even_bounds, fill, long_constraint_count, new_pattern};
 use super::chunks::{Chunk, cut_into_chunks};
 use super::free_components::{FreeComponent, free_components};
 use super::linear_solver::{LARGEST_FACTOR_BYTES, LinearSolver, LinearSystem, Order};
-use super::parallel::for_parts;
+use super::parallel::{both, for_parts};
 use super::report::IterationBytes;
 use crate::constraints::ConstraintSet;
 use crate::error::{Error, Result, Status};
@@ -94,6 +94,7 @@ impl System {
         wish: LinearSolver,
         previous: Option<Self>,
         counts: &mut SystemCounts,
+        is_parallel: bool,
     ) -> Result<Self> {
         let point_count = points.len();
         let stiffness: Vec<Vec<f64>> = constraints
@@ -103,56 +104,70 @@ impl System {
         // One without meaning where there is none, so that there is always a matrix.
         let unknown_count = (point_count + long_constraint_count(constraints)).max(1);
         let started = Instant::now();
-        let known = previous.filter(|known| known.matrix.dimension() == unknown_count);
-        let (mut matrix, known_linear) = match known {
+        let mut known = previous.filter(|known| known.matrix.dimension() == unknown_count);
+        let is_filled =
+            known.as_mut().is_some_and(|known| fill(known.matrix.split(), constraints, &stiffness, point_count));
+        let (mut matrix, known_linear) = match known.filter(|_| is_filled) {
             Some(known) => (known.matrix, Some(known.linear).filter(|linear| linear.wish == wish)),
             None => (new_pattern(constraints, point_count, unknown_count)?, None),
         };
-        let linear = match (fill(&mut matrix, constraints, &stiffness, point_count), known_linear) {
-            (true, Some(known)) => known,
-            (covered, _) => {
-                if !covered {
-                    matrix = new_pattern(constraints, point_count, unknown_count)?;
-                    fill(&mut matrix, constraints, &stiffness, point_count);
-                }
-                // Conjugate gradients that were asked for need no ordering.
-                counts.orderings = counts.orderings.saturating_add(u32::from(wish != LinearSolver::ConjugateGradients));
-                LinearSystem::new(&matrix, points, wish, LARGEST_FACTOR_BYTES)?
+        // Conjugate gradients that were asked for need no ordering.
+        let is_ordered = known_linear.is_none() && wish != LinearSolver::ConjugateGradients;
+        counts.orderings = counts.orderings.saturating_add(u32::from(is_ordered));
+        let (pattern, values) = matrix.split();
+        let analyse =
+            || known_linear.map_or_else(|| LinearSystem::new(pattern, points, wish, LARGEST_FACTOR_BYTES), Ok);
+        let assemble = || {
+            if !is_filled {
+                fill((pattern, &mut *values), constraints, &stiffness, point_count);
             }
+            let is_bare = |&i: &u32| pattern.diagonal(values, i as usize) == 0.0;
+            let unconstrained: Vec<u32> = (0..point_count as u32).filter(is_bare).collect();
+            // Inertia holds every point.
+            let is_static = inertia == 0.0;
+            let free = is_static.then(|| free_components(constraints, &stiffness, &unconstrained, point_count));
+            (unconstrained, free.unwrap_or_default())
         };
+        let cut = || {
+            let (chunks, chunk_bounds) = cut_into_chunks(constraints);
+            let targets = vec![DVec3::ZERO; chunk_bounds[chunks.len()]];
+            (chunks, chunk_bounds, targets)
+        };
+        let (linear, ((unconstrained, free_components), (chunks, chunk_bounds, targets))) =
+            both(is_parallel, analyse, || both(is_parallel, assemble, cut));
+        let linear = linear?;
         let analysis_seconds = started.elapsed().as_secs_f64();
 
-        let unconstrained: Vec<u32> =
-            (0..point_count).filter(|&i| matrix.diagonal(i) == 0.0).map(|i| i as u32).collect();
-        let (chunks, chunk_bounds) = cut_into_chunks(constraints);
         let point_bounds = even_bounds(point_count);
         let mut system = Self {
             point_count,
             matrix,
             linear,
             chunk_energies: vec![0.0; chunks.len()],
-            targets: vec![DVec3::ZERO; chunk_bounds[chunks.len()]],
-            chunks,
-            chunk_bounds,
-            gather: Gather::default(),
             chunk_moves: vec![0.0; point_bounds.len() - 1],
             point_bounds,
             solution: vec![DVec3::ZERO; point_count],
+            targets,
+            chunks: Vec::new(),
+            chunk_bounds: Vec::new(),
+            gather: Gather::default(),
             unconstrained,
-            free_components: Vec::new(),
+            free_components,
             proximal: Vec::new(),
-            stiffness,
+            stiffness: Vec::new(),
             change: Vec::new(),
             image: Vec::new(),
             analysis_seconds,
             factorisation_seconds: 0.0,
         };
         let started = Instant::now();
-        system.make_definite(constraints, inertia, counts)?;
+        // The place of each unknown is known before the factor is.
+        let place = system.linear.order().place.to_vec();
+        let gather = || Gather::new(constraints, &stiffness, &chunks, &chunk_bounds, &place);
+        let (made, gather) = both(is_parallel, || system.make_definite(inertia, counts, is_parallel), gather);
+        made?;
         system.factorisation_seconds = started.elapsed().as_secs_f64();
-        let (chunks, bounds) = (&system.chunks, &system.chunk_bounds);
-        system.gather = Gather::new(constraints, &system.stiffness, chunks, bounds, system.linear.order());
-        Ok(system)
+        Ok(Self { gather, stiffness, chunks, chunk_bounds, ..system })
     }
 
     /// What an iteration goes through; `None` without a factor.
@@ -216,12 +231,14 @@ impl System {
     pub(super) fn global_step(&mut self, points: &[DVec3], external: &[DVec3], is_parallel: bool) {
         let is_parallel = is_parallel && self.is_global_step_long();
         let (gather, targets, pulls) = (&self.gather, &self.targets, &self.proximal);
+        let (rows, scale) = self.linear.rows_mut_and_scale();
+        let terms = Terms { external, pulls, points, scale };
         let work = |chunk: usize, rows: &mut [Lanes], (): &mut ()| {
-            gather.write_rows(gather.bounds[chunk], rows, targets, external, pulls, points);
+            gather.write_rows(gather.bounds[chunk], rows, targets, terms);
         };
         // Nothing is allocated for results of no size.
         let mut no_results = vec![(); gather.bounds.len() - 1];
-        for_parts(&gather.bounds, self.linear.rows_mut(), &mut no_results, is_parallel, &work);
+        for_parts(&gather.bounds, rows, &mut no_results, is_parallel, &work);
         self.solve(points, is_parallel);
     }
 
@@ -310,7 +327,7 @@ impl System {
         let rest = vec![DVec3::ZERO; n];
         let mut left = forces.to_vec();
         for _ in 0..RESISTANCE_STEPS {
-            self.linear.rows_mut().fill([0.0; 4]);
+            self.linear.rows_mut_and_scale().0.fill([0.0; 4]);
             for (point, left) in left.iter().enumerate() {
                 let (row, scale) = self.linear.row_mut(point);
                 *row = lanes(scale * *left);
@@ -362,7 +379,7 @@ impl System {
     }
 
     /// Adds the inertia, or the remedies for a singular matrix, and factorises.
-    fn make_definite(&mut self, constraints: &ConstraintSet, inertia: f64, counts: &mut SystemCounts) -> Result<()> {
+    fn make_definite(&mut self, inertia: f64, counts: &mut SystemCounts, is_parallel: bool) -> Result<()> {
         for i in self.point_count..self.matrix.dimension() {
             if self.matrix.diagonal(i) == 0.0 {
                 *self.matrix.diagonal_mut(i) = 1.0;
@@ -373,18 +390,17 @@ impl System {
             for i in 0..self.point_count {
                 *self.matrix.diagonal_mut(i) += inertia;
             }
-            return self.factorise(counts);
+            return self.factorise(counts, is_parallel);
         }
         for &point in &self.unconstrained {
             *self.matrix.diagonal_mut(point as usize) = 1.0;
         }
-        self.free_components = free_components(constraints, &self.stiffness, &self.unconstrained, self.point_count);
         for component in &mut self.free_components {
             let diagonal = self.matrix.diagonal_mut(component.points[0] as usize);
             component.held_stiffness = *diagonal;
             *diagonal *= 2.0;
         }
-        let factorised = self.factorise(counts);
+        let factorised = self.factorise(counts, is_parallel);
         if !self.linear.is_singular() {
             return factorised;
         }
@@ -401,14 +417,14 @@ impl System {
         for (i, pull) in self.proximal.iter().enumerate() {
             *self.matrix.diagonal_mut(i) += pull;
         }
-        self.factorise(counts)?;
+        self.factorise(counts, is_parallel)?;
         self.linear.expect_proximal_step();
         Ok(())
     }
 
-    fn factorise(&mut self, counts: &mut SystemCounts) -> Result<()> {
+    fn factorise(&mut self, counts: &mut SystemCounts, is_parallel: bool) -> Result<()> {
         let is_factor = self.linear.used() == LinearSolver::Direct;
         counts.factorisations = counts.factorisations.saturating_add(u32::from(is_factor));
-        self.linear.prepare(&self.matrix)
+        self.linear.prepare(&self.matrix, is_parallel)
     }
 }
