@@ -597,7 +597,7 @@ impl<T: Constraint> TypedBatch<T> {
             Rows::Centred => {
                 let targets = &targets[..4 * K];
                 for (j, x) in x.into_iter().enumerate() {
-                    let target = V4::gather(simd, [0, 1, 2, 3].map(|i| &targets[i * K + j]));
+                    let target = V4::gather_every(simd, K, &targets[j..]);
                     squared = (x - target).dot(x - target) + squared;
                 }
             }
@@ -607,10 +607,12 @@ impl<T: Constraint> TypedBatch<T> {
                 for row in 0..rows {
                     let mut image = V4::zero(simd);
                     for (j, x) in x.into_iter().enumerate() {
-                        let coefficient = [0, 1, 2, 3].map(|i| coefficients[(i * rows + row) * K + j]);
-                        image = x.mul_add(F4::new(simd, coefficient), image);
+                        let (at, step) = (row * K + j, rows * K);
+                        let [a, b, c, d] = [at, at + step, at + 2 * step, at + 3 * step];
+                        let four = [coefficients[a], coefficients[b], coefficients[c], coefficients[d]];
+                        image = x.mul_add(F4::new(simd, four), image);
                     }
-                    let residual = image - V4::gather(simd, [0, 1, 2, 3].map(|i| &targets[i * rows + row]));
+                    let residual = image - V4::gather_every(simd, rows, &targets[row..]);
                     squared = residual.dot(residual) + squared;
                 }
             }
@@ -643,13 +645,24 @@ impl<T: Constraint> TypedBatch<T> {
         let scalars = match T::INFO.scalars {
             // So that no access needs a check.
             Scalars::Named(names) => self.scalars.four_of(names.len(), slot)?,
-            _ => [0, 1, 2, 3].map(|i| self.scalars.get(slot + i)),
+            _ => {
+                let scalars = |i| self.scalars.get(slot + i);
+                [scalars(0), scalars(1), scalars(2), scalars(3)]
+            }
         };
-        let rest = &self.rest[slot..slot + 4];
-        let four = Four { simd, constraints: [0, 1, 2, 3].map(|i| &rest[i]), scalars };
+        let [a, b, c, d] = &self.rest[slot..slot + 4] else { return None };
+        let four = Four { simd, constraints: [a, b, c, d], scalars };
         // All indices are checked before the first point is read: the numbers then go straight into vector registers.
-        let points: [[&DVec3; 4]; K] = std::array::from_fn(|j| indices.map(|indices| &points[indices[j] as usize]));
-        let mut x = points.map(|points| V4::gather(simd, points));
+        let mut at = [[points.first()?; 4]; K];
+        for (j, at) in at.iter_mut().enumerate() {
+            for (at, indices) in at.iter_mut().zip(indices) {
+                *at = &points[indices[j] as usize];
+            }
+        }
+        let mut x = [V4::zero(simd); K];
+        for (x, at) in x.iter_mut().zip(at) {
+            *x = V4::gather(simd, at);
+        }
         if T::INFO.rows == Rows::Centred {
             // Summed relative to the first point: far from the origin the mean keeps the digits that differences have.
             let first = x[0];

@@ -210,15 +210,27 @@ impl<S: Isa> V4<S> {
     /// One vector per lane.
     #[inline(always)]
     pub fn gather(simd: S, vectors: [&DVec3; 4]) -> Self {
-        let [x, y, z] = [0, 1, 2].map(|axis| F4::new(simd, vectors.map(|vector| vector[axis])));
-        Self { x, y, z }
+        let [a, b, c, d] = vectors;
+        Self {
+            x: F4::new(simd, [a.x, b.x, c.x, d.x]),
+            y: F4::new(simd, [a.y, b.y, c.y, d.y]),
+            z: F4::new(simd, [a.z, b.z, c.z, d.z]),
+        }
+    }
+
+    /// The first of `vectors` and the next three at distances of `step`.
+    #[inline(always)]
+    pub fn gather_every(simd: S, step: usize, vectors: &[DVec3]) -> Self {
+        let vectors = &vectors[..3 * step + 1];
+        Self::gather(simd, [&vectors[0], &vectors[step], &vectors[2 * step], &vectors[3 * step]])
     }
 
     /// The vector of each lane.
     #[inline(always)]
     pub fn to_array(self) -> [DVec3; 4] {
-        let [x, y, z] = [self.x, self.y, self.z].map(F4::to_array);
-        std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]))
+        let (x, y, z) = (self.x.to_array(), self.y.to_array(), self.z.to_array());
+        let vector = |i: usize| DVec3::new(x[i], y[i], z[i]);
+        [vector(0), vector(1), vector(2), vector(3)]
     }
 
     /// The instruction set.
