@@ -30,8 +30,8 @@ use crate::linalg::simd::{Lanes, lanes, vector};
 /// Targets above which the local step runs in parallel: with the fastest types, two threads break even at half as many.
 const PARALLEL_TARGETS: usize = 2048;
 
-/// Entries of `Aᵀ` above which right-hand sides are gathered in parallel. Far less work per entry than a projection.
-const PARALLEL_ENTRIES: usize = 1 << 16;
+/// Entries of `Aᵀ` above which right-hand sides are gathered, and solutions read, in parallel: some 5 µs of work.
+const PARALLEL_ENTRIES: usize = 1 << 13;
 
 /// The pull of a proximal step, relative to the diagonal of `N`. Round-off along free motions is amplified by its
 /// inverse: 1e-16 becomes 1e-10 of the model's size per iteration.
