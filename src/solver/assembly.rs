@@ -10,7 +10,7 @@ use super::chunks::Chunk;
 use crate::constraints::{ConstraintSet, Rows};
 use crate::error::Result;
 use crate::linalg::cholesky::{Pattern, SymmetricMatrix};
-use crate::linalg::simd::{Kernel, Lanes, add_scaled, dispatch, lanes, vector};
+use crate::linalg::simd::{Kernel, add_scaled, dispatch, lanes, vector};
 
 /// Centred constraints of more points than this get an unknown of their own. Up to here the block has fewer entries
 /// than the fill that a further unknown would cause when it is eliminated.
@@ -19,60 +19,39 @@ const LONGEST_DENSE_STENCIL: usize = 12;
 /// Points, or rows of the linear solver, in one chunk.
 const CHUNK_POINTS: usize = 1024;
 
-/// `Aᵀ` by rows of the linear solver, in its order: each right-hand side as a sum over targets, in a fixed order.
-#[derive(Default)]
+/// `Aᵀ` by rows: the right-hand side of each point as a sum over targets, in a fixed order.
 pub(super) struct Gather {
     starts: Vec<usize>,
     /// The target of each entry.
     targets: Vec<u32>,
     /// The coefficient of each entry.
     coefficients: Vec<f64>,
-    /// The unknown of each row.
-    unknowns: Vec<u32>,
-    /// Where the chunks of rows begin, and the number of rows.
-    pub(super) bounds: Vec<usize>,
-}
-
-/// What right-hand sides have besides the targets' part, by unknowns.
-#[derive(Clone, Copy)]
-pub(super) struct Terms<'a> {
-    /// One entry per point, or none.
-    pub(super) external: &'a [DVec3],
-    /// How strongly each point is pulled towards where it is now; one entry per point, or none.
-    pub(super) pulls: &'a [f64],
-    pub(super) points: &'a [DVec3],
-    /// What the whole is multiplied by.
-    pub(super) scale: &'a [f64],
 }
 
 impl Gather {
-    /// `place` is that of each unknown among the rows; `bounds` says where the targets of each chunk begin.
+    /// `bounds` says where the targets of each chunk begin.
     pub(super) fn new(
         constraints: &ConstraintSet,
         stiffness: &[Vec<f64>],
         chunks: &[Chunk],
         bounds: &[usize],
-        place: &[u32],
+        point_count: usize,
     ) -> Self {
         let targets_of = (constraints, chunks, bounds);
-        let row_count = place.len();
-        let row = |unknown: u32| place[unknown as usize] as usize;
-        let mut starts = vec![0_usize; row_count + 1];
-        each_target(targets_of, stiffness, |point, _, _| starts[row(point) + 1] += 1);
-        for i in 0..row_count {
+        let mut starts = vec![0_usize; point_count + 1];
+        each_target(targets_of, stiffness, |point, _, _| starts[point as usize + 1] += 1);
+        for i in 0..point_count {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
-        let mut targets = vec![0_u32; starts[row_count]];
-        let mut coefficients = vec![0.0; starts[row_count]];
+        let mut targets = vec![0_u32; starts[point_count]];
+        let mut coefficients = vec![0.0; starts[point_count]];
         each_target(targets_of, stiffness, |point, target, coefficient| {
-            let place = &mut next[row(point)];
+            let place = &mut next[point as usize];
             (targets[*place], coefficients[*place]) = (target, coefficient);
             *place += 1;
         });
-        let mut unknowns = vec![0; row_count];
-        (0..).zip(place).for_each(|(unknown, &place)| unknowns[place as usize] = unknown);
-        Self { starts, targets, coefficients, unknowns, bounds: even_bounds(row_count) }
+        Self { starts, targets, coefficients }
     }
 
     /// The number of entries.
@@ -85,19 +64,9 @@ impl Gather {
         size_of_val(&*self.starts) + size_of_val(&*self.targets) + size_of_val(&*self.coefficients)
     }
 
-    /// Writes the rows from `first` on: the sums of `targets`, and the terms.
-    pub(super) fn write_rows(&self, first: usize, rows: &mut [Lanes], targets: &[DVec3], terms: Terms<'_>) {
-        dispatch(WriteRows { gather: self, first, rows: &mut *rows, targets, scale: terms.scale });
-        let Terms { external, pulls, points, scale } = terms;
-        if external.is_empty() && pulls.is_empty() {
-            return;
-        }
-        for (row, &unknown) in rows.iter_mut().zip(&self.unknowns[first..]) {
-            let unknown = unknown as usize;
-            let external = external.get(unknown).copied().unwrap_or_default();
-            let pull = pulls.get(unknown).map_or(DVec3::ZERO, |pull| *pull * points[unknown]);
-            *row = lanes(vector(*row) + scale[unknown] * (external + pull));
-        }
+    /// Writes the sums of the points from `first` on.
+    pub(super) fn sum(&self, first: usize, targets: &[DVec3], sums: &mut [DVec3]) {
+        dispatch(Sum { gather: self, first, targets, sums });
     }
 }
 
@@ -108,27 +77,26 @@ pub(super) fn even_bounds(count: usize) -> Vec<usize> {
     bounds
 }
 
-struct WriteRows<'a> {
+struct Sum<'a> {
     gather: &'a Gather,
     first: usize,
-    rows: &'a mut [Lanes],
     targets: &'a [DVec3],
-    scale: &'a [f64],
+    sums: &'a mut [DVec3],
 }
 
-impl Kernel for WriteRows<'_> {
+impl Kernel for Sum<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FMA: bool>(self) {
-        let Self { gather, first, rows, targets, scale } = self;
-        for (i, row) in (first..).zip(rows) {
+        let Self { gather, first, targets, sums } = self;
+        for (i, result) in (first..).zip(sums) {
             let entries = gather.starts[i]..gather.starts[i + 1];
             let pairs = gather.targets[entries.clone()].iter().zip(&gather.coefficients[entries]);
             let sum = pairs.fold([0.0; 4], |sum, (&target, &coefficient)| {
                 add_scaled::<FMA>(sum, coefficient, lanes(targets[target as usize]))
             });
-            *row = sum.map(|sum| scale[gather.unknowns[i] as usize] * sum);
+            *result = vector(sum);
         }
     }
 }

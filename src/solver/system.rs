@@ -16,7 +16,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::assembly::{Gather, Terms, even_bounds, fill, long_constraint_count, new_pattern};
+use super::assembly::{Gather, even_bounds, fill, long_constraint_count, new_pattern};
 use super::chunks::{Chunk, cut_into_chunks};
 use super::free_components::{FreeComponent, free_components};
 use super::linear_solver::{LARGEST_FACTOR_BYTES, LinearSolver, LinearSystem, Order};
@@ -69,6 +69,9 @@ pub(super) struct System {
     gather: Gather,
     /// Where the chunks of points begin, and the number of points.
     point_bounds: Vec<usize>,
+    /// The unknown of each row of the linear solver, and where the chunks of rows begin.
+    unknowns: Vec<u32>,
+    row_bounds: Vec<usize>,
     /// The largest squared move in each chunk of points.
     chunk_moves: Vec<f64>,
     /// New points.
@@ -128,13 +131,13 @@ impl System {
             let free = is_static.then(|| free_components(constraints, &stiffness, &unconstrained, point_count));
             (unconstrained, free.unwrap_or_default())
         };
-        let cut = || {
-            let (chunks, chunk_bounds) = cut_into_chunks(constraints);
-            let targets = vec![DVec3::ZERO; chunk_bounds[chunks.len()]];
-            (chunks, chunk_bounds, targets)
+        let gather = || {
+            let (chunks, bounds) = cut_into_chunks(constraints);
+            let targets = vec![DVec3::ZERO; bounds[chunks.len()]];
+            (Gather::new(constraints, &stiffness, &chunks, &bounds, point_count), chunks, bounds, targets)
         };
-        let (linear, ((unconstrained, free_components), (chunks, chunk_bounds, targets))) =
-            both(is_parallel, analyse, || both(is_parallel, assemble, cut));
+        let (linear, ((unconstrained, free_components), (gather, chunks, chunk_bounds, targets))) =
+            both(is_parallel, analyse, || both(is_parallel, assemble, gather));
         let linear = linear?;
         let analysis_seconds = started.elapsed().as_secs_f64();
 
@@ -148,26 +151,27 @@ impl System {
             point_bounds,
             solution: vec![DVec3::ZERO; point_count],
             targets,
-            chunks: Vec::new(),
-            chunk_bounds: Vec::new(),
-            gather: Gather::default(),
+            chunks,
+            chunk_bounds,
+            gather,
+            unknowns: Vec::new(),
+            row_bounds: even_bounds(unknown_count),
             unconstrained,
             free_components,
             proximal: Vec::new(),
-            stiffness: Vec::new(),
+            stiffness,
             change: Vec::new(),
             image: Vec::new(),
             analysis_seconds,
             factorisation_seconds: 0.0,
         };
         let started = Instant::now();
-        // The place of each unknown is known before the factor is.
-        let place = system.linear.order().place.to_vec();
-        let gather = || Gather::new(constraints, &stiffness, &chunks, &chunk_bounds, &place);
-        let (made, gather) = both(is_parallel, || system.make_definite(inertia, counts, is_parallel), gather);
-        made?;
+        system.make_definite(inertia, counts, is_parallel)?;
         system.factorisation_seconds = started.elapsed().as_secs_f64();
-        Ok(Self { gather, stiffness, chunks, chunk_bounds, ..system })
+        let mut unknowns = vec![0; unknown_count];
+        (0..).zip(system.linear.order().place).for_each(|(unknown, &place)| unknowns[place as usize] = unknown);
+        system.unknowns = unknowns;
+        Ok(system)
     }
 
     /// What an iteration goes through; `None` without a factor.
@@ -230,15 +234,27 @@ impl System {
     /// the current `points`, which the remedies for singular systems refer to; [`Self::swap_solution`] then has them.
     pub(super) fn global_step(&mut self, points: &[DVec3], external: &[DVec3], is_parallel: bool) {
         let is_parallel = is_parallel && self.is_global_step_long();
-        let (gather, targets, pulls) = (&self.gather, &self.targets, &self.proximal);
-        let (rows, scale) = self.linear.rows_mut_and_scale();
-        let terms = Terms { external, pulls, points, scale };
-        let work = |chunk: usize, rows: &mut [Lanes], (): &mut ()| {
-            gather.write_rows(gather.bounds[chunk], rows, targets, terms);
+        let (gather, targets, pulls, bounds) = (&self.gather, &self.targets, &self.proximal, &self.point_bounds);
+        let sum = |chunk: usize, sums: &mut [DVec3], (): &mut ()| {
+            gather.sum(bounds[chunk], targets, sums);
+            for (point, sum) in (bounds[chunk]..).zip(sums) {
+                *sum += external.get(point).copied().unwrap_or_default();
+                if let Some(pull) = pulls.get(point) {
+                    *sum += *pull * points[point];
+                }
+            }
         };
         // Nothing is allocated for results of no size.
-        let mut no_results = vec![(); gather.bounds.len() - 1];
-        for_parts(&gather.bounds, rows, &mut no_results, is_parallel, &work);
+        for_parts(bounds, &mut self.solution, &mut vec![(); bounds.len() - 1], is_parallel, &sum);
+        let (bounds, unknowns, sums) = (&self.row_bounds, &self.unknowns, &self.solution);
+        let (rows, scale) = self.linear.rows_mut_and_scale();
+        let sort = |chunk: usize, rows: &mut [Lanes], (): &mut ()| {
+            for (row, &unknown) in rows.iter_mut().zip(&unknowns[bounds[chunk]..]) {
+                // The targets of the unknown means add up to nothing.
+                *row = sums.get(unknown as usize).map_or([0.0; 4], |sum| lanes(scale[unknown as usize] * *sum));
+            }
+        };
+        for_parts(bounds, rows, &mut vec![(); bounds.len() - 1], is_parallel, &sort);
         self.solve(points, is_parallel);
     }
 
