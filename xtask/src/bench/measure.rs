@@ -125,8 +125,6 @@ pub struct Timing {
 pub struct Bytes {
     /// The factor; it is read twice.
     pub factor: f64,
-    /// True if the library does not tell.
-    pub factor_is_estimate: bool,
     /// Right-hand sides.
     pub right_hand_sides: f64,
     /// Points.

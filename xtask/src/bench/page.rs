@@ -109,19 +109,17 @@ fn all_problems(page: &mut String, measurements: &Measurements) {
 
 fn floor(page: &mut String, measurements: &Measurements) {
     *page += "\n## How far from the floor\n\n\
-              An iteration must at least stream its data from memory: the factor twice, and right-hand sides, points, \
-              projections, and indices, coefficients, rest states, scalars and weights of the constraints once. The floor is \
+              An iteration must at least stream its data from memory, as it is stored: the factor twice (values and row indices), and \
+              right-hand sides, points, projections, and the constraints' indices, scalars, rest states and coefficients once. The floor is \
               these bytes over the rate at which as many threads read an array as large as the factor, measured in turns with \
               the iterations. Where that array fits a cache, the rate is the cache's.\n\n\
               | problem | vertices | factor, MB | the rest, MB | GB/s, one thread | two | floor, ms, one thread | two | \
               multiple, one thread | two |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
-    let mut is_estimate = false;
     for case in &measurements.cases {
         let Some(bytes) = &case.bytes else { continue };
-        is_estimate |= bytes.factor_is_estimate;
         let rate = |i: usize| case.bandwidth.map(|rates| 1e-9 * rates[i]);
         let cells = [
-            cell(Some(1e-6 * bytes.factor), if bytes.factor_is_estimate { "*" } else { "" }),
+            cell(Some(1e-6 * bytes.factor), ""),
             cell(Some(1e-6 * (bytes.total() - 2.0 * bytes.factor)), ""),
             cell(rate(0), ""),
             cell(rate(1), ""),
@@ -131,9 +129,6 @@ fn floor(page: &mut String, measurements: &Measurements) {
             cell(case.floor_multiple(1), ""),
         ];
         *page += &row(case, &cells);
-    }
-    if is_estimate {
-        *page += "\n\\* An estimate: 8 bytes for each value that an analysis of the same matrix finds, without row indices.\n";
     }
 }
 

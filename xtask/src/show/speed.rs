@@ -99,10 +99,6 @@ fn floor(figures: &mut Figures, measurements: &Measurements) {
             }
         }
     }
-    let is_estimate = |case: &bench::measure::Case| case.bytes.as_ref().is_some_and(|bytes| bytes.factor_is_estimate);
-    if measurements.cases.iter().any(is_estimate) {
-        figures.plain("the bytes of the factors are", "estimated");
-    }
 }
 
 fn threads_and_size(figures: &mut Figures, measurements: &Measurements) {
