@@ -17,7 +17,7 @@ use crate::linalg::simd::{Kernel, add_scaled, dispatch, lanes, vector};
 const LONGEST_DENSE_STENCIL: usize = 12;
 
 /// Points, or rows of the linear solver, in one chunk.
-const CHUNK_POINTS: usize = 1024;
+const CHUNK_POINTS: usize = 256;
 
 /// `Aᵀ` by rows: the right-hand side of each point as a sum over targets, in a fixed order.
 pub(super) struct Gather {
