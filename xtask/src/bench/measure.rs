@@ -283,7 +283,7 @@ impl Runner {
     fn case(&self, problem: &str, size: u32, peer_has_it: bool, plan: &Plan) -> Result<Case> {
         let iterations = match size {
             _ if plan.is_quick => 5,
-            ..5_000 => 200,
+            ..5_000 => 1000,
             5_000..20_000 => 50,
             20_000..80_000 => 20,
             _ => 10,

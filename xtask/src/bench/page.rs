@@ -112,7 +112,8 @@ fn floor(page: &mut String, measurements: &Measurements) {
               An iteration must at least stream its data from memory, as it is stored: the factor twice (values and row indices), and \
               right-hand sides, points, projections, and the constraints' indices, scalars, rest states and coefficients once. The floor is \
               these bytes over the rate at which as many threads read an array as large as the factor, measured in turns with \
-              the iterations. Where that array fits a cache, the rate is the cache's.\n\n\
+              the iterations. Where that array fits a cache, the rate is the cache's, \
+              and values arrive faster than they can be multiplied: then arithmetic takes longer than the floor.\n\n\
               | problem | vertices | factor, MB | the rest, MB | GB/s, one thread | two | floor, ms, one thread | two | \
               multiple, one thread | two |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
     for case in &measurements.cases {
@@ -226,7 +227,8 @@ fn how(page: &mut String, measurements: &Measurements) {
          - Every run is a process of its own. The runs take turns: this library on one thread, on two, the other library; \
          repetitions: {}, from 100 000 vertices {}. The tables show medians.\n\
          - A run initialises, makes three iterations that do not count, then five equal groups of iterations, whose median \
-         counts: 200 iterations in all up to 5 000 vertices, then 50, 20 and 10. Dynamic problems make one time step per group.\n\
+         counts: 1000 iterations in all up to 5 000 vertices (new threads take some milliseconds to spread over the cores), then \
+         50, 20 and 10. Dynamic problems make one time step per group.\n\
          - Both libraries get the same points, indices, weights and scalars to the last bit, in a file. The time in compas-shapeop \
          is that of its compiled `initialize` and `solve`, without its Python layer.\n\
          - For squares, compas-shapeop makes the shape of each quad from the quad; as scaling is allowed, it stands for the same \
