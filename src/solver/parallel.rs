@@ -1,7 +1,8 @@
 //! Work on parts of a slice, on one thread or many, with the same bits either way: the parts depend on the problem alone.
 
 /// Calls `work(i, part, result)` for every part `data[bounds[i]..bounds[i + 1]]` and `results[i]`. `bounds` begins at 0 and
-/// ends at the length of `data`. Parts that have no result may have `()`. They run in parallel on the current rayon pool if `is_parallel`. Allocates nothing.
+/// ends at the length of `data`. Parts that have no result may have `()`. They run in parallel on the current rayon pool if
+/// `is_parallel`. Allocates nothing.
 pub(super) fn for_parts<T: Send, R: Send>(
     bounds: &[usize],
     data: &mut [T],

@@ -199,9 +199,8 @@ impl System {
         self.gather.len() >= PARALLEL_ENTRIES
     }
 
-    /// Projects `points` onto every constraint, on the current rayon pool if `is_parallel` and it is long
-    /// enough. Returns `½ Σ s ‖A x − p‖²` if
-    /// `wants_energy`, else 0.
+    /// Projects `points` onto every constraint, on the current rayon pool if `is_parallel` and there is enough to do. Returns
+    /// `½ Σ s ‖A x − p‖²` if `wants_energy`, else 0.
     pub(super) fn local_step(
         &mut self,
         constraints: &ConstraintSet,
