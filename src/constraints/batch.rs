@@ -6,6 +6,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::deformation::{Deformation, gradient_four};
+use super::lists::Lists;
 use super::{Constraint, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{self, F4, Mask, V4};
 use crate::linalg::simd::{Isa, LaneKernel, dispatch_lanes};
@@ -65,118 +66,6 @@ pub(crate) trait Batch: Any + Send + Sync {
 
     /// A copy of the whole batch.
     fn clone_box(&self) -> Box<dyn Batch>;
-}
-
-/// Lists of one kind behind each other.
-#[derive(Clone, Debug)]
-struct Lists<V> {
-    places: Places,
-    values: Vec<V>,
-}
-
-#[derive(Clone, Debug)]
-enum Places {
-    /// So many lists of one length, in order and without gaps: the rule, which takes no memory per list.
-    Even { count: usize, length: usize },
-    /// Where each list begins and ends, and how many values no list uses any more: a list that is replaced by one of another
-    /// length moves to the end.
-    Uneven { spans: Vec<(usize, usize)>, unused: usize },
-}
-
-impl<V: Copy> Lists<V> {
-    fn new() -> Self {
-        Self { places: Places::Even { count: 0, length: 0 }, values: Vec::new() }
-    }
-
-    fn len(&self) -> usize {
-        match &self.places {
-            Places::Even { count, .. } => *count,
-            Places::Uneven { spans, .. } => spans.len(),
-        }
-    }
-
-    #[inline(always)]
-    fn get(&self, i: usize) -> &[V] {
-        match &self.places {
-            Places::Even { length, .. } => &self.values[i * length..(i + 1) * length],
-            Places::Uneven { spans, .. } => &self.values[spans[i].0..spans[i].1],
-        }
-    }
-
-    /// Where list `i` begins; for the number of lists, where the next one will.
-    #[inline(always)]
-    fn start(&self, i: usize) -> usize {
-        match &self.places {
-            Places::Even { length, .. } => i * length,
-            Places::Uneven { spans, .. } => spans.get(i).map_or(self.values.len(), |span| span.0),
-        }
-    }
-
-    /// The four lists from `i` on, if they are all of `length`.
-    #[inline(always)]
-    fn four_of(&self, length: usize, i: usize) -> Option<[&[V]; 4]> {
-        match &self.places {
-            Places::Even { length: all, .. } if *all == length => {
-                let lists = &self.values[i * length..][..4 * length];
-                Some([0, 1, 2, 3].map(|j| &lists[j * length..(j + 1) * length]))
-            }
-            Places::Uneven { .. } => {
-                let lists = [i, i + 1, i + 2, i + 3].map(|i| self.get(i));
-                lists.iter().all(|list| list.len() == length).then_some(lists)
-            }
-            Places::Even { .. } => None,
-        }
-    }
-
-    /// Appends a list, written by `append` to the end of the values.
-    fn push_with<R>(&mut self, append: impl FnOnce(&mut Vec<V>) -> R) -> R {
-        let start = self.values.len();
-        let result = append(&mut self.values);
-        let new = self.values.len() - start;
-        match &mut self.places {
-            Places::Even { count: count @ 0, length } => (*count, *length) = (1, new),
-            Places::Even { count, length } if *length == new => *count += 1,
-            _ => self.spans().push((start, start + new)),
-        }
-        result
-    }
-
-    fn replace(&mut self, i: usize, list: &[V]) {
-        let (start, length) = (self.start(i), self.get(i).len());
-        if list.len() == length {
-            self.values[start..start + length].copy_from_slice(list);
-            return;
-        }
-        let end = self.values.len();
-        self.spans()[i] = (end, end + list.len());
-        self.values.extend_from_slice(list);
-        if let Places::Uneven { unused, .. } = &mut self.places {
-            *unused += length;
-            if *unused > self.values.len() / 2 {
-                self.retain(&vec![true; self.len()]);
-            }
-        }
-    }
-
-    fn retain(&mut self, keep: &[bool]) {
-        let mut kept = Self::new();
-        for i in (0..self.len()).filter(|&i| keep[i]) {
-            kept.push_with(|values| values.extend_from_slice(self.get(i)));
-        }
-        *self = kept;
-    }
-
-    /// The places as spans, for lists that are not even any more.
-    fn spans(&mut self) -> &mut Vec<(usize, usize)> {
-        if let Places::Even { count, length } = self.places {
-            let spans = (0..count).map(|i| (i * length, (i + 1) * length)).collect();
-            self.places = Places::Uneven { spans, unused: 0 };
-        }
-        match &mut self.places {
-            Places::Uneven { spans, .. } => spans,
-            Places::Even { .. } => unreachable!("made uneven above"),
-        }
-    }
 }
 
 /// The batch of the type `T`.
@@ -309,7 +198,7 @@ impl<T: Constraint> Batch for TypedBatch<T> {
     }
 
     fn byte_count(&self) -> usize {
-        let lists = size_of_val(&*self.indices.values) + size_of_val(&*self.scalars.values);
+        let lists = size_of_val(self.indices.values()) + size_of_val(self.scalars.values());
         lists + size_of_val(&*self.rest)
     }
 
@@ -439,7 +328,7 @@ pub(super) const fn pair<const N: usize, const K: usize, A: Deformation<N>, B: D
             let Some((a, b)) = both::<A, B>(a, b) else { return false };
             let has_shapes_of_other = || a.rest.iter().zip(&b.rest).all(|(a, b)| a.rest_shape() == b.rest_shape());
             // Neither list of indices has gaps: indices are never replaced.
-            !a.rest.is_empty() && a.indices.values == b.indices.values && has_shapes_of_other()
+            !a.rest.is_empty() && a.indices.values() == b.indices.values() && has_shapes_of_other()
         },
         project: |[a, b], slots, points, targets| {
             if let Some((a, b)) = both::<A, B>(a, b) {

@@ -12,6 +12,7 @@ mod batch;
 mod deformation;
 #[cfg(test)]
 mod laws;
+mod lists;
 mod set;
 mod shape_fit;
 mod stencil;
