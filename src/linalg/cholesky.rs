@@ -1,4 +1,4 @@
-//! The sparse symmetric positive definite system of the global step: pattern, ordering, factor, solve.
+//! The Cholesky factor of a sparse symmetric positive definite matrix: ordering, factor, solve.
 //!
 //! The only file that knows faer. The matrix is scaled to a unit diagonal before it is factorised, so a pivot can be
 //! judged by its own size whatever the weights are.
@@ -24,6 +24,7 @@ use super::fronts::{Lower, Product};
 use super::nested_dissection::{self, Graph};
 use super::panels::{Panels, Supernodes};
 use super::simd::{Lanes, lanes, vector};
+use super::symmetric::{Pattern, SymmetricMatrix};
 use crate::error::{Error, Result, Status};
 
 /// A pivot of the unit-diagonal matrix of `dimension` rows at or below this is round-off: the row depends on the ones before
@@ -47,197 +48,6 @@ const LEAST_DISSECTED: usize = 20_000;
 /// sheets with bending (149) by 10 %.
 const LEAST_FILL: usize = 128;
 
-/// Where the lower triangle of a symmetric matrix has entries, in compressed columns.
-#[derive(Clone, Debug)]
-pub struct Pattern {
-    dimension: usize,
-    column_starts: Vec<u32>,
-    /// Ascending within a column; the diagonal entry first.
-    rows: Vec<u32>,
-}
-
-/// The lower triangle of a symmetric matrix, assembled again and again into the same pattern.
-#[derive(Clone, Debug)]
-pub struct SymmetricMatrix {
-    pattern: Pattern,
-    values: Vec<f64>,
-}
-
-impl Pattern {
-    /// The number of rows.
-    pub fn dimension(&self) -> usize {
-        self.dimension
-    }
-
-    /// An entry wherever `visit` reports one. `visit` calls its argument with `(i, j)` for every
-    /// entry of either triangle, repeated ones included; the diagonal is always there. It is called twice and must
-    /// report the same entries.
-    ///
-    /// # Errors
-    /// Status `TooLarge` where 32-bit indices do not suffice.
-    fn new(dimension: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self> {
-        let mut counts = vec![1_usize; dimension];
-        visit(&mut |i, j| counts[i.min(j) as usize] += usize::from(i != j));
-        let mut next: Vec<usize> = Vec::with_capacity(dimension);
-        let mut total = 0_usize;
-        for &count in &counts {
-            next.push(total);
-            total += count;
-        }
-        if u32::try_from(total).is_err() || u32::try_from(dimension).is_err() {
-            return Err(Error::new(Status::TooLarge, format!("{total} matrix entries exceed 32-bit indices")));
-        }
-        let mut rows = vec![0_u32; total];
-        let starts = next.clone();
-        for (j, place) in next.iter_mut().enumerate() {
-            rows[*place] = j as u32;
-            *place += 1;
-        }
-        visit(&mut |i, j| {
-            if i != j {
-                let column = i.min(j) as usize;
-                rows[next[column]] = i.max(j);
-                next[column] += 1;
-            }
-        });
-        // Sort each column and close the gaps that repeated entries leave.
-        let mut column_starts = Vec::with_capacity(dimension + 1);
-        column_starts.push(0);
-        let mut length = 0;
-        for (&start, &end) in starts.iter().zip(&next) {
-            rows[start..end].sort_unstable();
-            let column_start = length;
-            for k in start..end {
-                if length == column_start || rows[length - 1] != rows[k] {
-                    rows[length] = rows[k];
-                    length += 1;
-                }
-            }
-            column_starts.push(length as u32);
-        }
-        rows.truncate(length);
-        rows.shrink_to_fit();
-        Ok(Self { dimension, column_starts, rows })
-    }
-
-    /// Who is whose neighbour.
-    fn graph(&self) -> Graph {
-        let mut starts = vec![0_u32; self.dimension + 1];
-        let off_diagonal = |visit: &mut dyn FnMut(u32, u32)| {
-            for column in 0..self.dimension {
-                let (start, end) = (self.column_starts[column] as usize, self.column_starts[column + 1] as usize);
-                self.rows[start..end].iter().filter(|&&row| row as usize != column).for_each(|&row| {
-                    visit(row, column as u32);
-                    visit(column as u32, row);
-                });
-            }
-        };
-        off_diagonal(&mut |i, _| starts[i as usize + 1] += 1);
-        for i in 0..self.dimension {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut neighbours = vec![0; starts[self.dimension] as usize];
-        off_diagonal(&mut |i, j| {
-            let place = &mut next[i as usize];
-            neighbours[*place as usize] = j;
-            *place += 1;
-        });
-        Graph { starts, neighbours }
-    }
-
-    /// Calls `visit(i, j, k)` for every entry, column by column, rows ascending; `k` is the place of its value.
-    fn visit(&self, mut visit: impl FnMut(u32, u32, usize)) {
-        for j in 0..self.dimension {
-            for k in self.column_starts[j] as usize..self.column_starts[j + 1] as usize {
-                visit(self.rows[k], j as u32, k);
-            }
-        }
-    }
-
-    /// Adds `value` to entry `(i, j)`, and so to `(j, i)`, of the matrix with these `values`. False if there is no such entry.
-    #[must_use]
-    pub fn add(&self, values: &mut [f64], i: u32, j: u32, value: f64) -> bool {
-        let (row, column) = (i.max(j), i.min(j) as usize);
-        let (start, end) = (self.column_starts[column] as usize, self.column_starts[column + 1] as usize);
-        match self.rows[start..end].binary_search(&row) {
-            Ok(k) => {
-                values[start + k] += value;
-                true
-            }
-            Err(_) => false,
-        }
-    }
-
-    /// The diagonal entry `i` of the matrix with these `values`.
-    pub fn diagonal(&self, values: &[f64], i: usize) -> f64 {
-        values[self.column_starts[i] as usize]
-    }
-}
-
-impl SymmetricMatrix {
-    /// The zero matrix with an entry wherever `visit` reports one. `visit` calls its argument with `(i, j)` for every
-    /// entry of either triangle, repeated ones included; the diagonal is always there. It is called twice and must
-    /// report the same entries.
-    ///
-    /// # Errors
-    /// Status `TooLarge` where 32-bit indices do not suffice.
-    pub fn with_pattern(dimension: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self> {
-        let pattern = Pattern::new(dimension, visit)?;
-        Ok(Self { values: vec![0.0; pattern.rows.len()], pattern })
-    }
-
-    /// Where it has entries.
-    pub fn pattern(&self) -> &Pattern {
-        &self.pattern
-    }
-
-    /// Its entries, for assembling them while the pattern is analysed.
-    pub fn split(&mut self) -> (&Pattern, &mut [f64]) {
-        (&self.pattern, &mut self.values)
-    }
-
-    /// The number of rows.
-    pub fn dimension(&self) -> usize {
-        self.pattern.dimension
-    }
-
-    /// Adds `value` to entry `(i, j)` and so to `(j, i)`. False if the pattern has no such entry.
-    #[must_use]
-    pub fn add(&mut self, i: u32, j: u32, value: f64) -> bool {
-        self.pattern.add(&mut self.values, i, j, value)
-    }
-
-    /// The diagonal entry `i`.
-    pub fn diagonal(&self, i: usize) -> f64 {
-        self.pattern.diagonal(&self.values, i)
-    }
-
-    /// A mutable reference to the diagonal entry `i`.
-    pub fn diagonal_mut(&mut self, i: usize) -> &mut f64 {
-        &mut self.values[self.pattern.column_starts[i] as usize]
-    }
-
-    /// Calls `visit(i, j, value)` for every entry of the lower triangle, column by column, rows ascending.
-    pub fn visit(&self, mut visit: impl FnMut(u32, u32, f64)) {
-        self.pattern.visit(|i, j, k| visit(i, j, self.values[k]));
-    }
-
-    /// `y = A x` for three columns at once. Both slices have [`Self::dimension`] entries.
-    pub fn multiply(&self, x: &[DVec3], y: &mut [DVec3]) {
-        y.fill(DVec3::ZERO);
-        for j in 0..self.pattern.dimension {
-            for k in self.pattern.column_starts[j] as usize..self.pattern.column_starts[j + 1] as usize {
-                let (i, value) = (self.pattern.rows[k] as usize, self.values[k]);
-                y[i] += value * x[j];
-                if i != j {
-                    y[j] += value * x[i];
-                }
-            }
-        }
-    }
-}
-
 /// A fill-reducing ordering and the pattern of the factor. It serves every matrix with the same pattern.
 pub struct Analysis {
     symbolic: SymbolicCholesky<u32>,
@@ -258,9 +68,9 @@ impl Analysis {
     /// Status `TooLarge` if memory does not suffice.
     pub fn new(pattern: &Pattern, positions: &[DVec3]) -> Result<Self> {
         let by_degree = Self::ordered(pattern, SymmetricOrdering::Amd)?;
-        let is_worth_trying = pattern.dimension >= LEAST_DISSECTED
-            && by_degree.factor_value_count() >= LEAST_FILL * pattern.dimension
-            && positions.len() == pattern.dimension;
+        let is_worth_trying = pattern.dimension() >= LEAST_DISSECTED
+            && by_degree.factor_value_count() >= LEAST_FILL * pattern.dimension()
+            && positions.len() == pattern.dimension();
         if !is_worth_trying {
             return Ok(by_degree);
         }
@@ -268,7 +78,7 @@ impl Analysis {
         let order = nested_dissection::order(&graph, positions, &mut |unknowns| order_leaf(&graph, unknowns));
         let mut inverse = vec![0_u32; order.len()];
         (0..).zip(&order).for_each(|(k, &unknown)| inverse[unknown as usize] = k);
-        let permutation = PermRef::new_checked(&order, &inverse, pattern.dimension);
+        let permutation = PermRef::new_checked(&order, &inverse, pattern.dimension());
         let dissected = Self::ordered(pattern, SymmetricOrdering::Custom(permutation))?;
         Ok(if dissected.factor_value_count() < by_degree.factor_value_count() { dissected } else { by_degree })
     }
@@ -324,11 +134,11 @@ impl Factor {
             Some(permutation) => permutation.arrays().1.iter().map(|&i| position[i as usize]).collect(),
             None => position.to_vec(),
         };
-        let mut starts = vec![0_u32; pattern.dimension + 1];
+        let mut starts = vec![0_u32; pattern.dimension() + 1];
         let ends =
             |i: u32, j: u32| (place[i as usize].min(place[j as usize]), place[i as usize].max(place[j as usize]));
         pattern.visit(|i, j, _| starts[ends(i, j).0 as usize + 1] += 1);
-        for i in 0..pattern.dimension {
+        for i in 0..pattern.dimension() {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
@@ -442,7 +252,7 @@ fn supernodal(analysis: &Analysis) -> Result<&SymbolicSupernodalCholesky<u32>> {
 }
 
 fn columns(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, u32> {
-    let n = pattern.dimension;
+    let n = pattern.dimension();
     SymbolicSparseColMatRef::new_checked(n, n, &pattern.column_starts, None, &pattern.rows)
 }
 

@@ -11,10 +11,10 @@
 
 use glam::DVec3;
 
-use super::cholesky::SymmetricMatrix;
 use super::multilevel::Multilevel;
 use super::rows::{CHUNK, SparseRows, each_chunk, fill};
 use super::simd::{Lanes, lanes, vector};
+use super::symmetric::SymmetricMatrix;
 use crate::error::{Error, Result, Status};
 
 /// A coordinate is solved when no entry of the preconditioned residual `M⁻¹(b − A x)` is above this part of the extent of

@@ -10,3 +10,4 @@ mod panels;
 mod rows;
 pub mod simd;
 pub mod small;
+pub mod symmetric;

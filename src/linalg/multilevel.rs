@@ -12,9 +12,10 @@
 
 use glam::DVec3;
 
-use super::cholesky::{Analysis, Factor, SymmetricMatrix};
+use super::cholesky::{Analysis, Factor};
 use super::rows::{SparseRows, each_chunk};
 use super::simd::{Lanes, lanes, vector};
+use super::symmetric::SymmetricMatrix;
 use crate::error::Result;
 
 /// Up to so many unknowns a level gets a factor: solving with it then costs far less than one product on the first.

@@ -6,8 +6,8 @@
 
 use rayon::prelude::*;
 
-use super::cholesky::SymmetricMatrix;
 use super::simd::{Kernel, Lanes, dispatch, mul_add};
+use super::symmetric::SymmetricMatrix;
 
 /// Rows that one thread works on at a time: some 30 µs of work.
 pub const CHUNK: usize = 1024;

@@ -9,8 +9,8 @@ use glam::DVec3;
 use super::chunks::Chunk;
 use crate::constraints::{ConstraintSet, Rows};
 use crate::error::Result;
-use crate::linalg::cholesky::{Pattern, SymmetricMatrix};
 use crate::linalg::simd::{Kernel, add_scaled, dispatch, lanes, vector};
+use crate::linalg::symmetric::{Pattern, SymmetricMatrix};
 
 /// Centred constraints of more points than this get an unknown of their own. Up to here the block has fewer entries
 /// than the fill that a further unknown would cause when it is eliminated.

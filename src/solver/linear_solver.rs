@@ -6,9 +6,10 @@
 use glam::DVec3;
 
 use crate::error::{Error, Result, Status};
-use crate::linalg::cholesky::{Analysis, Factor, Pattern, SymmetricMatrix};
+use crate::linalg::cholesky::{Analysis, Factor};
 use crate::linalg::conjugate_gradients::ConjugateGradients;
 use crate::linalg::simd::Lanes;
+use crate::linalg::symmetric::{Pattern, SymmetricMatrix};
 
 /// A value of the factor while it is computed: itself, and at most as much again for the fronts, which blocks of tetrahedra come
 /// near.

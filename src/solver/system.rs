@@ -24,8 +24,8 @@ use super::parallel::{both, for_parts};
 use super::report::IterationBytes;
 use crate::constraints::ConstraintSet;
 use crate::error::{Error, Result, Status};
-use crate::linalg::cholesky::SymmetricMatrix;
 use crate::linalg::simd::{Lanes, lanes, vector};
+use crate::linalg::symmetric::SymmetricMatrix;
 
 /// Targets above which the local step runs in parallel: with the fastest types, two threads break even at half as many.
 const PARALLEL_TARGETS: usize = 2048;
