@@ -215,7 +215,9 @@ public:
     /// Iterates until the options say to stop.
     Report solve_until(const SolveOptions &options = {}) {
         Report report;
-        return finished(shapeop_solveUntil(handle(), &options, nullptr, nullptr, &report), std::move(report));
+        detail::check(shapeop_solveUntil(handle(), &options, nullptr, nullptr, &report), handle());
+        report.note = shapeop_lastError(handle());
+        return report;
     }
 
     /// The same; after every iteration `progress` is called with a `const shapeop::Progress &`. It returns true to go
@@ -228,7 +230,9 @@ public:
         if (watch.thrown) {
             std::rethrow_exception(watch.thrown);
         }
-        return finished(code, std::move(report));
+        detail::check(code, handle());
+        report.note = shapeop_lastError(handle());
+        return report;
     }
 
     double energy() const {
@@ -300,12 +304,6 @@ private:
         if (is_refused != 0) {
             detail::refuse(handle());
         }
-    }
-
-    Report finished(shapeop_err code, Report report) {
-        detail::check(code, handle());
-        report.note = shapeop_lastError(handle());
-        return report;
     }
 
     std::unique_ptr<ShapeOpSolver, Delete> op_;
