@@ -6,6 +6,7 @@ import ctypes
 from typing import Any
 
 import pytest
+
 import shapeop
 from near import assert_near
 from samples import SQUARE, saddle

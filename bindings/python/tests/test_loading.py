@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 import shapeop
 from shapeop import _abi, _library
 

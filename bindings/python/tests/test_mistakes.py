@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Callable
 
 import pytest
+
 import shapeop
 from near import assert_near, flat
 from shapeop import ErrorCode, Solver

@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 import pytest
+
 import shapeop
 from near import assert_near
 from samples import SQUARE, saddle

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 import shapeop
 from near import assert_near, flat
 from samples import SQUARE, saddle

@@ -6,6 +6,7 @@ import dataclasses
 from enum import IntEnum
 
 import pytest
+
 import shapeop
 from shapeop import _abi, _library
 

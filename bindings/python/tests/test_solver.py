@@ -7,6 +7,7 @@ import gc
 import math
 
 import pytest
+
 import shapeop
 from near import assert_near
 from samples import SQUARE, saddle, sheet
@@ -91,7 +92,7 @@ def test_a_shape_may_be_flat_or_a_list_of_points() -> None:
 
 
 def test_faces_may_have_different_lengths() -> None:
-    with Solver(saddle(0.1) + [[2, 0, 0]]) as solver:
+    with Solver([*saddle(0.1), [2, 0, 0]]) as solver:
         assert solver.add("Plane", [[0, 1, 2, 3], (1, 4, 2), range(5)]) == range(0, 3)
         assert solver.add("Plane", []) == range(0)
         assert solver.constraint_count == 3
@@ -212,7 +213,7 @@ def test_points_are_replaced_and_may_become_more() -> None:
 def test_a_flat_edge_is_degenerate() -> None:
     with Solver([[0, 0, 0], [0, 0, 0], [1, 0, 0]]) as solver:
         ids = solver.add("EdgeStrain", [[0, 1], [0, 2]])
-        assert [solver.is_degenerate(id) for id in ids] == [True, False]
+        assert list(map(solver.is_degenerate, ids)) == [True, False]
 
 
 def test_acceleration_linear_solver_and_threads_are_taken_by_name_and_by_member() -> None:
@@ -252,9 +253,9 @@ def test_a_solver_is_deleted_when_closed_and_when_forgotten(monkeypatch: pytest.
     assert deleted == [handle]
     forgotten = Solver(SQUARE)
     handle = forgotten._handle
+    forgotten.add("Closeness", [[0], [1], [2], [3]])
+    forgotten.init()
     with pytest.raises(KeyError):
-        forgotten.add("Closeness", [[0], [1], [2], [3]])
-        forgotten.init()
         forgotten.solve_until(progress=lambda _: {}["nothing"])
     del forgotten
     gc.collect()

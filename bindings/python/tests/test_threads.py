@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 import shapeop
 from near import flat
 from samples import sheet
