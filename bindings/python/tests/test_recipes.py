@@ -23,7 +23,7 @@ def bump(side: int) -> tuple[list[list[float]], list[list[int]]]:
 
 
 def worst(points: Any, faces: Any) -> float:
-    return max(shapeop.measure_faces("planarity", points, faces))
+    return float(max(shapeop.measure_faces("planarity", points, faces)))
 
 
 def test_the_names_are_the_library_s_and_each_is_a_function() -> None:
@@ -46,7 +46,7 @@ def test_a_saddle_becomes_as_planar_as_its_closeness_allows() -> None:
     # Each corner minimises c (z - h)^2 + w z^2.
     result = shapeop.planarize(saddle(0.1), FACE, closeness=0.5, weight=2, tolerance=1e-12)
     assert_near(result.points, saddle(0.1 * 0.5 / 2.5), 1e-9)
-    assert result.mesh is result.points
+    assert result.mesh is result.points  # type: ignore[comparison-overlap]
     assert result.report.outcome is shapeop.Outcome.CONVERGED
     # One plane, and the distance of each corner from its place.
     assert_near(result.violations, [0.02, 0.08, 0.08, 0.08, 0.08], 1e-9)
@@ -87,14 +87,14 @@ def test_options_reach_the_library() -> None:
         (lambda: shapeop.planarize(SQUARE, FACE, closeness=float("nan")), shapeop.Error, "closeness.*NaN"),
         (lambda: shapeop.planarize(SQUARE, FACE, anchors=[9]), shapeop.Error, "anchors.*9"),
         (
-            lambda: shapeop.planarize(SQUARE, FACE, anchors=[0.5]),
+            lambda: shapeop.planarize(SQUARE, FACE, anchors=[0.5]),  # type: ignore[list-item]
             shapeop.ArgumentTypeError,
             "anchors: expected integers",
         ),
         (lambda: shapeop.planarize(SQUARE, FACE, length=2), shapeop.Error, "length.*only .equalize. takes"),
         (lambda: shapeop.equalize(SQUARE, FACE, length=-2), shapeop.Error, "length.*-2"),
         (lambda: shapeop.planarize(SQUARE, FACE, fairness_kind="x"), shapeop.ArgumentError, "keep-detail, smooth"),
-        (lambda: shapeop.planarize(SQUARE, FACE, colour=1), TypeError, "colour"),
+        (lambda: shapeop.planarize(SQUARE, FACE, colour=1), TypeError, "colour"),  # type: ignore[call-arg]
         (lambda: shapeop.recipe("flatten", SQUARE, FACE), shapeop.Error, "recipes planarize"),
         (lambda: shapeop.measure_faces("beauty", SQUARE, FACE), shapeop.InvalidValueError, "measures planarity"),
         (lambda: shapeop.measure_faces("planarity", SQUARE, [[0, 1]]), shapeop.Error, r"faces\[0\]"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import gc
 import math
+from typing import Any
 
 import pytest
 
@@ -74,9 +75,10 @@ def test_one_scalar_set_stands_for_all_and_defaults_are_the_places_at_creation()
 
 
 def test_a_shape_may_be_flat_or_a_list_of_points() -> None:
-    shape = [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]]
+    shape = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]]
     flat_shape = [number for point in shape for number in point]
-    for scalars in (shape, flat_shape):
+    forms: list[Any] = [shape, flat_shape]
+    for scalars in forms:
         with Solver(SQUARE) as solver:
             solver.add("Rigid", [0, 1, 2, 3], scalars=scalars)
             solver.init()
@@ -94,7 +96,8 @@ def test_a_shape_may_be_flat_or_a_list_of_points() -> None:
 def test_faces_may_have_different_lengths() -> None:
     with Solver([*saddle(0.1), [2, 0, 0]]) as solver:
         assert solver.add("Plane", [[0, 1, 2, 3], (1, 4, 2), range(5)]) == range(0, 3)
-        assert solver.add("Plane", []) == range(0)
+        none: list[list[int]] = []
+        assert solver.add("Plane", none) == range(0)
         assert solver.constraint_count == 3
 
 
@@ -161,7 +164,8 @@ def test_stopping_rules_are_obeyed() -> None:
     assert solver().solve_until(3, tolerance=0).outcome is Outcome.ITERATION_LIMIT
     assert solver().solve_until(tolerance=0, time_budget_seconds=1e-9).outcome is Outcome.TIME_BUDGET
     for answer in (False, 0):
-        report = solver().solve_until(progress=lambda told, answer=answer: answer if told.iteration == 2 else None)
+        answers = [None, answer, None]
+        report = solver().solve_until(progress=lambda told, answers=answers: answers[told.iteration - 1])  # type: ignore[misc]
         assert (report.outcome, report.iterations) == (Outcome.CANCELLED, 2)
     assert solver().solve_until(progress=lambda _: True).outcome is Outcome.CONVERGED
 
@@ -256,7 +260,7 @@ def test_a_solver_is_deleted_when_closed_and_when_forgotten(monkeypatch: pytest.
     forgotten.add("Closeness", [[0], [1], [2], [3]])
     forgotten.init()
     with pytest.raises(KeyError):
-        forgotten.solve_until(progress=lambda _: {}["nothing"])
+        forgotten.solve_until(progress=lambda _: dict[str, int]()["nothing"])
     del forgotten
     gc.collect()
     assert deleted[1:] == [handle]

@@ -100,7 +100,7 @@ def name_bytes(value: object, name: str) -> bytes:
 
 def _sequence(values: object, name: str, expected: str) -> Any:
     """`values` as something with a length; iterators are not looked into twice, so they are refused."""
-    if isinstance(values, (str, bytes, bytearray, dict)) or not hasattr(values, "__len__"):
+    if isinstance(values, (str, bytes, bytearray, dict, set, frozenset)) or not hasattr(values, "__len__"):
         raise ArgumentTypeError(f"{name}: expected {expected}, found {found(values)}")
     return values
 
@@ -155,8 +155,9 @@ def numbers(values: Any, name: str) -> Block:
         if values.ndim > 1:
             raise ArgumentError(f"{name}: expected a number or a 1-D array, found {found(values)}")
         return _array_block(values, name)
-    if hasattr(values, "__len__") and not isinstance(values, (str, bytes)):
-        return _list_block(values, name, "a number or a list of numbers")
+    if hasattr(values, "__len__"):
+        expected = "a number or a list of numbers"
+        return _list_block(_sequence(values, name, expected), name, expected)
     return _list_block([real(values, name)], name, "a number")
 
 

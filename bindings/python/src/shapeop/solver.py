@@ -259,9 +259,14 @@ class Solver:
         check(lib.shapeop_setWeights(self._handle, *many, *weights), self._handle)
 
     def remove(self, ids: Ids) -> None:
-        """Removes constraints. Their ids are never given out again; arrays with one entry per id keep their place."""
+        """Removes constraints, all or none: an id or many.
+
+        The ids are never given out again; arrays with one entry per id keep their place.
+        """
         many = _arrays.ids(ids if hasattr(ids, "__len__") else [ids], "ids")
-        for one in dict.fromkeys(many.pointer[: many.length]):
+        once = list(dict.fromkeys(many.pointer[: many.length]))
+        # One that does not exist goes first: it is refused before any other is removed.
+        for one in sorted(once, key=lambda id: lib.shapeop_isConstraint(self._handle, id) == 1):
             check(lib.shapeop_removeConstraint(self._handle, one), self._handle)
 
     @property
