@@ -247,7 +247,10 @@ def index_lists(values: Any, name: str) -> IndexLists:
 
 def doubles(values: Any) -> Doubles:
     """Numbers that the library filled into a ctypes array, as they are handed out."""
-    return list(values) if numpy is None else numpy.array(values)
+    if numpy is None:
+        return list(values)
+    # Without its type in words: the description that ctypes gives of empty arrays is wrong in Python 3.9.
+    return numpy.frombuffer(values).copy() if len(values) > 0 else numpy.empty(0)
 
 
 def member(kind: Any, value: Any, name: str) -> int:
