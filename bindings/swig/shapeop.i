@@ -65,7 +65,8 @@ static const char *CTYPE##_refuses_index(const CTYPE *array, int index, char why
 
 /* The same for a call that uses `count * per_count` values. `values` is null, or comes from CTYPE_values. What is null
  * or below 0 is left to the library. */
-static const char *CTYPE##_refuses_count(const TYPE *values, int count, int per_count, const char *name, char why[120]) {
+static const char *CTYPE##_refuses_count(const TYPE *values, int count, int per_count, const char *name,
+                                         char why[120]) {
     long long expected = (long long)count * per_count;
     int length = values ? ((const CTYPE *)((const char *)values - offsetof(CTYPE, values)))->length : INT_MAX;
     if (!values || expected <= length) return NULL;
@@ -103,12 +104,12 @@ static const char *CTYPE##_refuses_count(const TYPE *values, int count, int per_
 }
 
 /* cast() is for programs that call it, as those written for carrays.i do. */
-%typemap(javacode) CTYPE %{
+%typemap(javacode) struct CTYPE %{
   public NAME cast() {
     return this;
   }
 %}
-%typemap(cscode) CTYPE %{
+%typemap(cscode) struct CTYPE %{
   public NAME cast() {
     return this;
   }
