@@ -3,7 +3,7 @@ using System.Collections.Generic;
 using System.Globalization;
 using System.IO;
 
-/// <summary>Three problems (tests/languages/README.md) through the SWIG classes: ThreeProblems.exe MESH FOLDER.</summary>
+/// <summary>Three problems (tests/languages/README.md) through the SWIG classes: MESH FOLDER.</summary>
 public static class ThreeProblems
 {
     static doubleArray Doubles(params double[] values)
