@@ -10,12 +10,13 @@ import struct
 import uuid
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, Iterable, List, Optional, Tuple
 
 import archive
 from archive import Chunk
 
 ACCESS = {"item": 0, "list": 1, "tree": 2}
+WIRES = {"default": 0, "faint": 1, "hidden": 2}
 
 # Grasshopper's GH_Exposure: in which section of the tab's panel the component stands; -1 hides it.
 EXPOSURES = (-1, 2, 4, 8, 16, 32, 64, 128)
@@ -127,6 +128,8 @@ class Component:
     exposure: int
     guid: uuid.UUID
     is_advanced: bool
+    hide_input: bool
+    hide_output: bool
     icon_display: int
     inputs: Tuple[Parameter, ...]
     outputs: Tuple[Parameter, ...]
@@ -166,6 +169,8 @@ def load(folder: Path) -> Component:
         exposure=exposure,
         guid=top.guid("instanceGuid"),
         is_advanced=python.get("isAdvancedMode", bool, False),
+        hide_input=python.get("hideInput", bool, True),
+        hide_output=python.get("hideOutput", bool, True),
         icon_display=python.get("iconDisplay", int, 0),
         inputs=_parameters(python, "inputParameters"),
         outputs=_parameters(python, "outputParameters"),
@@ -207,6 +212,13 @@ class _Place:
             raise ComponentError("%s: %s is %.40r, expected %s" % (self.path, where, value, kind.__name__))
         return value
 
+    def one_of(self, key: str, names: Iterable[str], default: str) -> str:
+        name = self.get(key, str, default)
+        if name not in names:
+            where = "%s.%s" % (self.place, key)
+            raise ComponentError("%s: %s is %r, expected one of %s" % (self.path, where, name, ", ".join(sorted(names))))
+        return name
+
     def guid(self, key: str) -> uuid.UUID:
         text = self.get(key, str)
         try:
@@ -220,29 +232,19 @@ def _parameters(python: _Place, key: str) -> Tuple[Parameter, ...]:
     for index, values in enumerate(python.get(key, list, [])):
         place = _Place(python.path, "%s[%d]" % (key, index), values)
         name = place.get("name", str)
-        access = place.values.get("scriptParamAccess", "item")
-        if access in ACCESS.values():
-            access = {code: text for text, code in ACCESS.items()}[access]
-        if access not in ACCESS:
-            where = "%s: %s.scriptParamAccess" % (python.path, place.place)
-            raise ComponentError("%s is %r, expected one of %s" % (where, access, ", ".join(ACCESS)))
-        hint = place.get("typeHintID", str, "none")
-        if hint not in RHINO7.type_hints:
-            where = "%s: %s.typeHintID" % (python.path, place.place)
-            raise ComponentError("%s is %r, expected one of %s" % (where, hint, ", ".join(sorted(RHINO7.type_hints))))
         parameters.append(
             Parameter(
                 name=name,
                 nickname=place.get("nickname", str, name),
                 description=place.get("description", str, ""),
-                access=access,
-                type_hint=hint,
+                access=place.one_of("scriptParamAccess", ACCESS, "item"),
+                type_hint=place.one_of("typeHintID", RHINO7.type_hints, "none"),
                 optional=place.get("optional", bool, True),
                 allow_tree_access=place.get("allowTreeAccess", bool, True),
                 show_type_hints=place.get("showTypeHints", bool, True),
                 reverse=place.get("reverse", bool, False),
                 simplify=place.get("simplify", bool, False),
-                wire_display=place.get("wireDisplay", int, 0),
+                wire_display=WIRES[place.one_of("wireDisplay", WIRES, "default")],
             )
         )
     return tuple(parameters)
@@ -257,8 +259,8 @@ def fill_state(state: Chunk, component: Component, host: Host, owner: uuid.UUID)
     state.set("NickName", archive.STRING, component.nickname)
     if host is RHINO7:
         state.set("CodeInput", archive.STRING, component.code)
-        state.set("HideInput", archive.BOOL, True)
-        state.set("HideOutput", archive.BOOL, True)
+        state.set("HideInput", archive.BOOL, component.hide_input)
+        state.set("HideOutput", archive.BOOL, component.hide_output)
         state.set("IsAdvancedMode", archive.BOOL, component.is_advanced)
         state.set("MarshalOutGuids", archive.BOOL, True)
     else:
