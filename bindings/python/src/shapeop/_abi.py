@@ -1,0 +1,210 @@
+"""The declarations of the C ABI for ctypes."""
+
+import ctypes
+from ctypes import POINTER, c_char_p, c_double, c_int, c_uint, c_void_p
+
+ABI_VERSION = 1
+
+SO_SUCCESS = 0
+SO_INVALID_CONSTRAINT_TYPE = 1
+SO_INVALID_ARGUMENT_LENGTH = 2
+SO_UNMATCHING_CONSTRAINT_ID = 3
+SO_INVALID_VALUE = 16
+SO_INDEX_OUT_OF_RANGE = 17
+SO_UNMATCHING_FORCE_ID = 18
+SO_NOT_INITIALISED = 19
+SO_UNBOUNDED = 20
+SO_BUSY = 21
+SO_INVALID_HANDLE = 22
+SO_NULL_POINTER = 23
+SO_INVALID_INPUT = 24
+SO_TOO_LARGE = 25
+SO_INTERNAL = 26
+SO_PROJECTION_NEAREST = 0
+SO_PROJECTION_FEASIBLE = 1
+SO_PROJECTION_APPROXIMATE = 2
+SO_OUTCOME_CONVERGED = 0
+SO_OUTCOME_ITERATION_LIMIT = 1
+SO_OUTCOME_TIME_BUDGET = 2
+SO_OUTCOME_CANCELLED = 3
+SO_OUTCOME_STALLED = 4
+SO_OUTCOME_UNBOUNDED = 5
+SO_LINEAR_SOLVER_AUTOMATIC = 0
+SO_LINEAR_SOLVER_DIRECT = 1
+SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS = 2
+SO_ACCELERATION_NONE = 0
+SO_ACCELERATION_ANDERSON = 1
+SO_ACCELERATION_QUASI_NEWTON = 2
+SO_ACCELERATION_AUTOMATIC = 3
+
+
+class shapeop_constraint_type(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("least_indices", c_int),
+        ("greatest_indices", c_int),
+        ("scalar_count", c_int),
+        ("index_name_count", c_int),
+        ("projection", c_int),
+        ("is_centred", c_int),
+        ("energy_scale_power", c_int),
+        ("name", c_char_p),
+        ("help", c_char_p),
+        ("violation_unit", c_char_p),
+        ("edited_as", c_char_p),
+    ]
+
+
+class shapeop_constraint_scalar(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("has_default", c_int),
+        ("default_value", c_double),
+        ("name", c_char_p),
+    ]
+
+
+class shapeop_solve_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("max_iterations", c_uint),
+        ("tolerance", c_double),
+        ("time_budget_seconds", c_double),
+    ]
+
+
+class shapeop_progress(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("iteration", c_uint),
+        ("energy", c_double),
+        ("largest_move", c_double),
+    ]
+
+
+shapeop_progress_callback = ctypes.CFUNCTYPE(c_int, POINTER(shapeop_progress), c_void_p)
+
+
+class shapeop_solve_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("outcome", c_int),
+        ("iterations", c_uint),
+        ("unconstrained_count", c_uint),
+        ("energy_before", c_double),
+        ("energy_after", c_double),
+        ("largest_move", c_double),
+        ("analysis_seconds", c_double),
+        ("factorisation_seconds", c_double),
+        ("local_seconds", c_double),
+        ("global_seconds", c_double),
+        ("evaluations", c_uint),
+        ("rejected_energy_rose", c_uint),
+        ("rejected_not_finite", c_uint),
+        ("rejected_ill_conditioned", c_uint),
+        ("rejected_not_descent", c_uint),
+        ("rejected_line_search", c_uint),
+        ("ordering_count", c_uint),
+        ("factorisation_count", c_uint),
+        ("linear_solver", c_int),
+        ("linear_iterations", c_uint),
+    ]
+
+
+class shapeop_recipe_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("fairness_kind", c_int),
+        ("weight", c_double),
+        ("closeness", c_double),
+        ("fairness", c_double),
+        ("length", c_double),
+        ("anchors", POINTER(c_int)),
+        ("nb_anchors", c_int),
+        ("anchor_boundary", c_int),
+        ("anchor_corners", c_int),
+    ]
+
+
+def declare(library):
+    """Sets the argument and result types of every function of `library`."""
+    doubles, ints = POINTER(c_double), POINTER(c_int)
+    functions = [
+        ("shapeop_version", c_char_p, []),
+        ("shapeop_abiVersion", c_int, []),
+        ("shapeop_lastError", c_char_p, [c_void_p]),
+        ("shapeop_errorText", c_char_p, [c_int]),
+        ("shapeop_create", c_void_p, []),
+        ("shapeop_delete", None, [c_void_p]),
+        ("shapeop_init", c_int, [c_void_p]),
+        ("shapeop_initDynamic", c_int, [c_void_p, c_double, c_double, c_double]),
+        ("shapeop_solve", c_int, [c_void_p, c_uint]),
+        ("shapeop_setTimeStep", None, [c_void_p, c_double]),
+        ("shapeop_setDamping", None, [c_void_p, c_double]),
+        ("shapeop_setThreadCount", c_int, [c_void_p, c_int]),
+        ("shapeop_setAcceleration", c_int, [c_void_p, c_int, c_uint]),
+        ("shapeop_setLinearSolver", c_int, [c_void_p, c_int]),
+        ("shapeop_setPoints", None, [c_void_p, doubles, c_int]),
+        ("shapeop_getPoints", None, [c_void_p, doubles, c_int]),
+        ("shapeop_pointCount", c_int, [c_void_p]),
+        ("shapeop_unconstrainedCount", c_int, [c_void_p]),
+        ("shapeop_addConstraint", c_int, [c_void_p, c_char_p, ints, c_int, c_double]),
+        (
+            "shapeop_addConstraints",
+            c_int,
+            [c_void_p, c_char_p, ints, c_int, ints, c_int, doubles, c_int, doubles, c_int, c_int, c_uint, ints],
+        ),
+        ("shapeop_editConstraint", c_int, [c_void_p, c_char_p, c_int, doubles, c_int]),
+        ("shapeop_editConstraints", c_int, [c_void_p, c_char_p, ints, c_int, doubles, c_int, c_int]),
+        ("shapeop_setWeight", c_int, [c_void_p, c_int, c_double]),
+        ("shapeop_setWeights", c_int, [c_void_p, ints, c_int, doubles, c_int]),
+        ("shapeop_removeConstraint", c_int, [c_void_p, c_int]),
+        ("shapeop_constraintCount", c_int, [c_void_p]),
+        ("shapeop_isConstraint", c_int, [c_void_p, c_int]),
+        ("shapeop_isDegenerate", c_int, [c_void_p, c_int]),
+        ("shapeop_addGravityForce", c_int, [c_void_p, doubles]),
+        ("shapeop_addVertexForce", c_int, [c_void_p, doubles, c_int]),
+        ("shapeop_editVertexForce", None, [c_void_p, c_int, doubles, c_int]),
+        ("shapeop_removeForce", c_int, [c_void_p, c_int]),
+        ("shapeop_forceCount", c_int, [c_void_p]),
+        ("shapeop_isForce", c_int, [c_void_p, c_int]),
+        ("shapeop_constraintTypeCount", c_int, []),
+        ("shapeop_constraintType", c_int, [c_int, POINTER(shapeop_constraint_type)]),
+        ("shapeop_constraintScalar", c_int, [c_int, c_int, POINTER(shapeop_constraint_scalar)]),
+        ("shapeop_constraintIndexName", c_char_p, [c_int, c_int]),
+        ("shapeop_defaultSolveOptions", c_int, [POINTER(shapeop_solve_options)]),
+        (
+            "shapeop_solveUntil",
+            c_int,
+            [
+                c_void_p,
+                POINTER(shapeop_solve_options),
+                shapeop_progress_callback,
+                c_void_p,
+                POINTER(shapeop_solve_report),
+            ],
+        ),
+        ("shapeop_energy", c_int, [c_void_p, doubles]),
+        ("shapeop_getViolations", c_int, [c_void_p, doubles, c_int]),
+        ("shapeop_setProblem", c_int, [c_void_p, c_char_p, POINTER(shapeop_solve_options)]),
+        ("shapeop_problemText", c_char_p, [c_char_p]),
+        ("shapeop_defaultRecipeOptions", c_int, [POINTER(shapeop_recipe_options)]),
+        (
+            "shapeop_recipe",
+            c_char_p,
+            [c_char_p, doubles, c_int, ints, c_int, ints, c_int, POINTER(shapeop_recipe_options)],
+        ),
+        ("shapeop_recipeName", c_char_p, [c_int]),
+        ("shapeop_recipeCount", c_int, []),
+        (
+            "shapeop_measureFaces",
+            c_int,
+            [c_char_p, doubles, c_int, ints, c_int, ints, c_int, doubles, c_int],
+        ),
+        ("shapeop_measureName", c_char_p, [c_int]),
+        ("shapeop_measureCount", c_int, []),
+    ]
+    for name, result, arguments in functions:
+        function = getattr(library, name, None)  # the library may be older than this list
+        if function is not None:
+            function.restype, function.argtypes = result, arguments
