@@ -13,6 +13,9 @@ class Measure:
     most: float = None
     least: float = None
 
+    def __post_init__(self):
+        self.value = float(self.value)
+
     @property
     def is_met(self):
         return (self.most is None or self.value <= self.most) and (self.least is None or self.value >= self.least)

@@ -1,5 +1,6 @@
 """Shaded pictures of meshes: orthographic projection, faces painted from far to near."""
 
+import io
 from dataclasses import dataclass, field
 
 import matplotlib
@@ -10,6 +11,7 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
+from PIL import Image
 
 SURFACE = "#dbe4ee"
 EDGE = "#33414f"
@@ -20,7 +22,7 @@ GUIDE = "#7a8794"
 #: Bad is red, good is green; in between the lightness has its maximum, so that it can be read without the hues.
 GOOD_TO_BAD = LinearSegmentedColormap.from_list("good to bad", ["#1b7f4b", "#8cc665", "#f8ecae", "#f0a05a", "#c22b2b"])
 #: Compression red, tension blue.
-STRAIN = LinearSegmentedColormap.from_list("strain", ["#b2182b", "#ef8a62", "#e4e4e4", "#67a9cf", "#2166ac"])
+STRAIN = LinearSegmentedColormap.from_list("strain", ["#b2182b", "#ef8a62", "#c9c9c9", "#67a9cf", "#2166ac"])
 NEAR_TO_FAR = LinearSegmentedColormap.from_list("near to far", ["#2b6cb0", "#9dbfdd", "#e6dfd8", "#e58a6d", "#b8212f"])
 
 DPI = 130
@@ -85,7 +87,7 @@ def shaded(points, faces, colors, camera):
         normal = normal / size if size > 0 else eye
         normals.append(normal if normal @ eye >= 0 else -normal)
     normals = np.array(normals)
-    light = 0.52 + 0.40 * np.clip(normals @ lamp, 0, 1) + 0.12 * np.clip(normals @ eye, 0, 1)
+    light = 0.60 + 0.34 * np.clip(normals @ lamp, 0, 1) + 0.12 * np.clip(normals @ eye, 0, 1)
     rgb = np.array([to_rgb(colors)] * len(faces)) if isinstance(colors, str) else np.array(colors)[:, :3]
     return np.clip(rgb * light[:, None], 0, 1)
 
@@ -175,8 +177,11 @@ def page(path, rows, camera, legends=(), width=11.0, row_labels=(), is_one_scale
         drawn.set_label(label, fontsize=8, labelpad=2)
         drawn.ax.tick_params(labelsize=7.5, length=2, pad=1.5)
         drawn.outline.set_linewidth(0.4)
-    figure.savefig(path, dpi=DPI, facecolor="white", metadata={"Software": None}, pil_kwargs={"optimize": True})
+    drawn = io.BytesIO()
+    figure.savefig(drawn, dpi=DPI, facecolor="white")
     plt.close(figure)
+    # A palette of 256 colours takes a third of the room, and shows no difference.
+    Image.open(drawn).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=4, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def _frame(axes, window, ratio, margin):

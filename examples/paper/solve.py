@@ -1,10 +1,11 @@
 """Solves the models of a figure as its JSON states them: see README.md."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
-import shim  # TEMPORARY
+import shapeop
 
 import meshes
 import patterns
@@ -28,6 +29,12 @@ def read_spec(number):
     return json.loads((FOLDER / ("fig%02d.json" % number)).read_text())
 
 
+def spec_text(spec):
+    """The JSON text of a spec: innermost lists on one line each, numbers with as many decimals as in meshes."""
+    text = json.dumps(_rounded(spec), indent=1)
+    return re.sub(r"\[[^][{}]*\]", lambda found: " ".join(found[0].split()).replace("[ ", "[").replace(" ]", "]"), text) + "\n"
+
+
 def mesh_of(model):
     return meshes.read_obj(FOLDER / model["mesh"])
 
@@ -39,7 +46,7 @@ def tree_of(constraints, vertex_count, faces):
 
 def solve(model, progress=lambda: None):
     points, faces = mesh_of(model)
-    solver = shim.Solver(points)
+    solver = shapeop.Solver(points)
     settings = model["settings"]
     trees, added, scalars = {}, {}, {}
     for constraints in model["constraints"]:
@@ -48,10 +55,15 @@ def solve(model, progress=lambda: None):
         scalars[name] = constraints.get("scalars")
         added[name] = (
             constraints["type"],
-            solver.add(constraints["type"], trees[name], constraints["weights"], scalars[name]),
+            solver.add(
+                constraints["type"],
+                trees[name],
+                weight=one_or_each(constraints["weights"]),
+                scalars=one_or_each(scalars[name]),
+            ),
         )
     if settings["mode"] == "live":
-        solver.gravity(settings["gravity"])
+        solver.add_gravity(settings["gravity"])
     if settings.get("dynamic"):
         solver.init_dynamic(settings["mass"], settings["damping"], settings["time_step"])
     else:
@@ -67,15 +79,28 @@ def solve(model, progress=lambda: None):
                     share = k / stage["solves"] if edit.get("ramp") else 1.0
                     now = _between(before, edit["scalars"], share)
                     scalars[edit["constraints"]] = now
-                    solver.edit(*added[edit["constraints"]], now)
+                    solver.edit(*added[edit["constraints"]], one_or_each(now))
             solver.solve(settings["iterations"])
             frames.append(solver.points)
             progress()
     return solved
 
 
+def one_or_each(values):
+    """A list of one as its one item, which the package repeats for all constraints."""
+    return values[0] if values is not None and len(values) == 1 else values
+
+
 def solve_count(spec):
     return sum(stage["solves"] for model in spec["models"] for stage in model["stages"])
+
+
+def _rounded(value):
+    if isinstance(value, dict):
+        return {key: _rounded(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_rounded(one) for one in value]
+    return round(float(value), meshes.DECIMALS) + 0.0 if isinstance(value, (float, np.floating)) else value
 
 
 def _between(before, after, share):
