@@ -88,7 +88,10 @@ def shaded(points, faces, colors, camera):
         normals.append(normal if normal @ eye >= 0 else -normal)
     normals = np.array(normals)
     light = 0.60 + 0.34 * np.clip(normals @ lamp, 0, 1) + 0.12 * np.clip(normals @ eye, 0, 1)
-    rgb = np.array([to_rgb(colors)] * len(faces)) if isinstance(colors, str) else np.array(colors)[:, :3]
+    is_plain = isinstance(colors, str)
+    if not is_plain:
+        light = 0.55 + 0.45 * light  # colours that mean something stay near those of the legend
+    rgb = np.array([to_rgb(colors)] * len(faces)) if is_plain else np.array(colors)[:, :3]
     return np.clip(rgb * light[:, None], 0, 1)
 
 
