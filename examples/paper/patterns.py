@@ -2,8 +2,8 @@
 
 
 def edges(faces):
-    """Every edge once, as `(start, end)` in the direction and order in which the faces first meet it."""
-    return [key[0] for key in _faces_of_edges(faces).values()]
+    """Every edge once, as `(smaller index, larger index)`, sorted."""
+    return sorted(_faces_of_edges(faces))
 
 
 def face_vertices(vertex_count, faces):
@@ -32,37 +32,53 @@ def vertices_all(vertex_count, faces):
 
 def face_angle_vertices(vertex_count, faces):
     return [
-        [face[i], face[(i + 1) % len(face)], face[i - 1]]
-        for face in faces
-        for i in range(len(face))
+        [face[i], face[(i + 1) % len(face)], face[i - 1]] for face in faces for i in range(len(face))
     ]
 
 
 def edge_face_vertices(vertex_count, faces):
     inner = []
-    for (start, end), *followers in _faces_of_edges(faces).values():
-        if len(followers) == 2:
-            inner.append([start, end] + followers)
+    for edge, beside in sorted(_faces_of_edges(faces).items()):
+        if len(beside) == 2:
+            inner.append(list(edge) + [corner for face in beside for corner in face if corner not in edge])
     return inner
 
 
 def naked_vertices(vertex_count, faces):
-    naked = {
-        vertex
-        for edge, *followers in _faces_of_edges(faces).values()
-        if len(followers) == 1
-        for vertex in edge
-    }
-    return [[vertex] for vertex in sorted(naked)]
+    naked = {}
+    for edge, beside in _faces_of_edges(faces).items():
+        if len(beside) == 1:
+            for start, end in (edge, edge[::-1]):
+                naked.setdefault(start, []).append(end)
+    loops = []
+    while naked:
+        loop, reached = set(), [min(naked)]
+        while reached:
+            vertex = reached.pop()
+            loop.add(vertex)
+            reached += naked.pop(vertex, [])
+        loops.append(sorted(loop))
+    return loops
 
 
-def _faces_of_edges(faces):
-    """For each undirected edge: `[(start, end), the vertex that follows the edge in each of its faces ...]`."""
-    found = {}
+def hinges(faces):
+    """For bending between polygons, no pattern but an explicit tree: for each inner edge, its two vertices, then from each face the
+    vertex that follows the edge in that face's order. Of triangles it gives what `edgeFaceVertices` gives."""
+    followers = {}
     for face in faces:
         for i, start in enumerate(face):
             end, follower = face[(i + 1) % len(face)], face[(i + 2) % len(face)]
-            found.setdefault(frozenset((start, end)), [(start, end)]).append(follower)
+            followers.setdefault((min(start, end), max(start, end)), []).append(follower)
+    return [list(edge) + beside for edge, beside in sorted(followers.items()) if len(beside) == 2]
+
+
+def _faces_of_edges(faces):
+    """`{(smaller index, larger index): the faces that have this edge}`."""
+    found = {}
+    for face in faces:
+        for i, start in enumerate(face):
+            end = face[(i + 1) % len(face)]
+            found.setdefault((min(start, end), max(start, end)), []).append(face)
     return found
 
 

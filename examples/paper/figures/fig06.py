@@ -55,4 +55,4 @@ def picture(solved, path):
         title = "worst %.2f %%, mean %.2f %%, above %g %%: %d of %d" % (planarity.max(), planarity.mean(), TOLERANCE, (planarity > TOLERANCE).sum(), len(planarity))
         rows[1].append(Panel(points, tube.faces, title, face_colors=colors, floor=0))
     legend = (GOOD_TO_BAD, 0, TOLERANCE, "planarity in %: distance of the diagonals over their mean length (clipped)")
-    page(path, rows, Camera(-120, 27), [legend], width=10.0)
+    page(path, rows, Camera(-120, 38), [legend], width=10.0)
