@@ -143,9 +143,10 @@ def extent(panel, camera):
     return np.array([shown.min(axis=0), shown.max(axis=0)])
 
 
-def page(path, rows, camera, legends=(), width=11.0, row_labels=(), is_one_scale=True, margin=0.04):
+def page(path, rows, camera, legends=(), width=11.0, row_labels=(), is_one_scale=True, plot=None, margin=0.04):
     """Writes a page of panels in rows. With `is_one_scale` all have one window, so that sizes can be compared; otherwise each panel
-    fills its place. `legends`: (colormap, low, high, label with unit), drawn below, side by side."""
+    fills its place. `legends`: (colormap, low, high, label with unit), drawn below, side by side. `plot`: (height in inches, a function that
+draws into the axes it is given), below everything."""
     count = max(len(row) for row in rows)
     windows = {id(p): extent(p, p.camera or camera) for row in rows for p in row if p}
     if is_one_scale:
@@ -157,6 +158,8 @@ def page(path, rows, camera, legends=(), width=11.0, row_labels=(), is_one_scale
     panel_width = (width - label_width) / count
     panel_height, title_height = panel_width * ratio, 0.42
     legend_height = 0.62 if legends else 0.05
+    if plot:
+        legend_height += plot[0] + 0.9
     height = len(rows) * (panel_height + title_height) + legend_height
     figure = plt.figure(figsize=(width, height))
     for r, row in enumerate(rows):
@@ -180,6 +183,12 @@ def page(path, rows, camera, legends=(), width=11.0, row_labels=(), is_one_scale
         drawn.set_label(label, fontsize=8, labelpad=2)
         drawn.ax.tick_params(labelsize=7.5, length=2, pad=1.5)
         drawn.outline.set_linewidth(0.4)
+    if plot:
+        axes = figure.add_axes([0.7 / width, 0.5 / height, (width - 1.0) / width, plot[0] / height])
+        axes.tick_params(labelsize=7.5)
+        axes.xaxis.label.set_size(8)
+        axes.yaxis.label.set_size(8)
+        plot[1](axes)
     drawn = io.BytesIO()
     figure.savefig(drawn, dpi=DPI, facecolor="white")
     plt.close(figure)

@@ -82,25 +82,25 @@ def circle_distances(corners):
     return np.hypot(in_plane, off_plane)
 
 
-def fit(shape, corners, allow_scale):
-    """The rotation (and scale) of `shape` and the translation that bring it nearest to `corners`: the distances that remain, one
-    for each corner (Kabsch 1976, Umeyama 1991; no reflection)."""
-    a, b = shape - shape.mean(axis=0), corners - corners.mean(axis=0)
-    left, singular, right = np.linalg.svd(b.T @ a)
-    sign = np.array([1, 1, np.sign(np.linalg.det(left @ right))])
-    scale = (singular * sign).sum() / (a * a).sum() if allow_scale else 1.0
-    return np.linalg.norm(b - scale * a @ (left * sign @ right).T, axis=1)
-
-
-def nearest_shape(shapes, corners, allow_scale=False):
-    """Which of the shapes, started at any corner and run either way round, is nearest in the least-squares sense, and how far its
-    farthest corner is: `(index, distance)`."""
-    best = None
-    for index, shape in enumerate(shapes):
+def nearest_shapes(shapes, corners, allow_scale=False):
+    """For each polygon, of k corners: which of the shapes (m, k, 3) is nearest to it in the least-squares sense, when it is moved,
+    turned (not mirrored) and, with `allow_scale`, scaled, starts at any corner and runs either way round; and how far its farthest
+    corner then is. `corners` is (n, k, 3); returns two arrays of n (Kabsch 1976, Umeyama 1991)."""
+    corners = corners - corners.mean(axis=1, keepdims=True)
+    least = np.full(len(corners), np.inf)
+    index, farthest = np.zeros(len(corners), dtype=int), np.zeros(len(corners))
+    for which, shape in enumerate(np.asarray(shapes, dtype=float)):
+        shape = shape - shape.mean(axis=0)
         for start in range(len(shape)):
-            turned = np.roll(shape, start, axis=0)
-            for candidate in (turned, turned[::-1]):
-                left = fit(candidate, corners, allow_scale)
-                if best is None or (left**2).sum() < best[0]:
-                    best = ((left**2).sum(), index, left.max())
-    return best[1], best[2]
+            for candidate in (np.roll(shape, start, axis=0), np.roll(shape, start, axis=0)[::-1]):
+                left, singular, right = np.linalg.svd(corners.transpose(0, 2, 1) @ candidate)
+                sign = np.ones_like(singular)
+                sign[:, 2] = np.sign(np.linalg.det(left @ right))
+                scale = (singular * sign).sum(axis=1) / (shape**2).sum() if allow_scale else np.ones(len(corners))
+                placed = candidate @ (left * sign[:, None, :] @ right).transpose(0, 2, 1) * scale[:, None, None]
+                distances = np.linalg.norm(corners - placed, axis=2)
+                squares = (distances**2).sum(axis=1)
+                is_nearer = squares < least
+                least[is_nearer], index[is_nearer] = squares[is_nearer], which
+                farthest[is_nearer] = distances[is_nearer].max(axis=1)
+    return index, farthest

@@ -39,7 +39,7 @@ def main(arguments=None):
     table = {}
     for figure in numbers:
         module, spec = ALL[figure], solve.read_spec(figure)
-        with tqdm(total=solve.solve_count(spec), desc="figure %d" % figure, unit="solve", leave=False) as bar:
+        with tqdm(total=solve.solve_count(spec), desc="figure %d" % figure, unit="solve", leave=False, mininterval=0.5) as bar:
             solved = {model["name"]: solve.solve(model, bar.update) for model in spec["models"]}
         measures = module.measures(solved)
         table["fig%02d" % figure] = {
