@@ -438,7 +438,7 @@ void anchors_keep_their_place() {
         solver.set_problem(shapeop::recipe("smooth", sheet.points, sheet.quads, {4}, options, {0, 9}));
     solver.solve_until(stopping);
     const std::vector<double> points = solver.points();
-    for (std::size_t i : {0, 1, 2, 27, 28, 29}) {
+    for (std::size_t i : {0u, 1u, 2u, 27u, 28u, 29u}) {
         near(points[i], sheet.points[i], "anchor", 1e-2);
     }
     refused(std::nullopt, {"anchors", "64"}, "an anchor that is no point",
