@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Faces are point indices behind each other; counts says how many belong to each. This is how the library takes them. */
+/* Faces are point indices behind each other; counts says how many belong to each: the library takes them so. */
 typedef struct Mesh {
     double *points;
     int *corners, *counts;
@@ -147,8 +147,8 @@ int main(int argc, char **argv) {
     for (i = 0; i < mesh.point_count; ++i) {
         every_point[i] = i;
     }
-    if (shapeop_addConstraints(op, "Closeness", every_point, mesh.point_count, &one, 1, &closeness_weight, 1, NULL, 0, 0,
-                               0, NULL) != SO_SUCCESS) {
+    if (shapeop_addConstraints(op, "Closeness", every_point, mesh.point_count, &one, 1, &closeness_weight, 1, NULL, 0,
+                               0, 0, NULL) != SO_SUCCESS) {
         fail("closeness", shapeop_lastError(op));
     }
     free(every_point);
