@@ -1,0 +1,13 @@
+"""One module for each figure of the paper. Each says:
+
+- `NUMBER`, `TITLE`, `CLAIM` (what the paper shows or says, in our words)
+- `build()`: the spec, as README.md states it, and its meshes by path
+- `measures(solved)`: what was measured, as `claims.Measure`s
+- `picture(solved, path)`: draws it
+
+`solved` maps the names of the models to `solve.Solved`.
+"""
+
+from . import fig04, fig05, fig06, fig07
+
+ALL = {module.NUMBER: module for module in (fig04, fig05, fig06, fig07)}

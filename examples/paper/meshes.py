@@ -1,0 +1,106 @@
+"""Meshes of the figures, made by rule, and OBJ files of them. A mesh is `(points, faces)`: an (n, 3) array and lists of indices."""
+
+import math
+
+import numpy as np
+
+#: Decimals of coordinates in files: a ten-thousandth of a millimetre of a model in metres, and the same text on every machine.
+DECIMALS = 7
+
+
+def read_obj(path):
+    points, faces = [], []
+    with open(path) as file:
+        for line in file:
+            words = line.split()
+            if words[:1] == ["v"]:
+                points.append([float(word) for word in words[1:4]])
+            elif words[:1] == ["f"]:
+                faces.append([int(word.split("/")[0]) - 1 for word in words[1:]])
+    return np.array(points), faces
+
+
+def obj_text(mesh):
+    points, faces = mesh
+    rounded = np.round(points, DECIMALS) + 0.0  # + 0.0: no negative zeros
+    lines = ["v " + " ".join("%.10g" % c for c in point) for point in rounded]
+    lines += ["f " + " ".join(str(index + 1) for index in face) for face in faces]
+    return "\n".join(lines) + "\n"
+
+
+def grid(columns, rows, place):
+    """`columns * rows` quads; vertex `(i, j)` has the index `(columns + 1) j + i` and lies at `place(i, j)`."""
+    stride = columns + 1
+    points = [place(i, j) for j in range(rows + 1) for i in range(stride)]
+    faces = [
+        [stride * j + i, stride * j + i + 1, stride * (j + 1) + i + 1, stride * (j + 1) + i]
+        for j in range(rows)
+        for i in range(columns)
+    ]
+    return np.array(points, dtype=float), faces
+
+
+def grid_lines(columns, rows):
+    """The rows and then the columns of vertices of `grid`."""
+    stride = columns + 1
+    along = [[stride * j + i for i in range(stride)] for j in range(rows + 1)]
+    across = [[stride * j + i for j in range(rows + 1)] for i in range(stride)]
+    return along + across
+
+
+def cloth(count, size):
+    """A flat square of `count * count` squares, each cut into two triangles by diagonals of alternating direction."""
+    step = size / count
+    points, quads = grid(count, count, lambda i, j: (i * step - size / 2, j * step - size / 2, 0.0))
+    faces = []
+    for index, (a, b, c, d) in enumerate(quads):
+        is_even = (index % count + index // count) % 2 == 0
+        faces += [[a, b, c], [a, c, d]] if is_even else [[a, b, d], [b, c, d]]
+    return points, faces
+
+
+def box(length, width, height):
+    """A closed box of unit squares along x, y and z, its normals outward; one end lies at x = 0, one at x = `length`."""
+    sizes = (length, width, height)
+    sides = []
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for level in (0, sizes[axis]):
+            for i in range(sizes[u]):
+                for j in range(sizes[v]):
+                    corners = []
+                    for du, dv in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                        corner = [0, 0, 0]
+                        corner[axis], corner[u], corner[v] = level, i + du, j + dv
+                        corners.append(tuple(corner))
+                    sides.append(corners if level else corners[::-1])
+    return welded(sides)
+
+
+def hexagon(count, edge):
+    """A flat regular hexagon as three rhombi of `count * count` quads that meet in its centre, all edges of one length."""
+    directions = [
+        np.array([math.cos(math.radians(a)), math.sin(math.radians(a)), 0.0]) for a in (0, 120, 240)
+    ]
+    polygons = []
+    for k in range(3):
+        u, v = directions[k] * edge, directions[(k + 1) % 3] * edge
+        for i in range(count):
+            for j in range(count):
+                polygons.append([i * u + j * v, (i + 1) * u + j * v, (i + 1) * u + (j + 1) * v, i * u + (j + 1) * v])
+    return welded(polygons)
+
+
+def welded(polygons):
+    """The mesh of polygons given by their corners; corners at the same place become one vertex."""
+    indices, points, faces = {}, [], []
+    for polygon in polygons:
+        face = []
+        for corner in polygon:
+            key = tuple(np.round(np.asarray(corner, dtype=float), 6) + 0.0)
+            if key not in indices:
+                indices[key] = len(points)
+                points.append(corner)
+            face.append(indices[key])
+        faces.append(face)
+    return np.array(points, dtype=float), faces
