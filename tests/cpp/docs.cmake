@@ -1,4 +1,4 @@
-# Writes the C and C++ of docs/c-and-cpp.md into FOLDER as programs, so that they are compiled. A block without an #include
+# Writes the C and C++ of docs/c-and-cpp.md as programs into a folder, so that they are compiled. A block without #include
 # is a part of one: it gets a solver and a mesh.
 function(write_blocks markdown language folder files)
   file(READ "${markdown}" text)
