@@ -91,6 +91,30 @@ def hexagon(count, edge):
     return welded(polygons)
 
 
+def snub_square(count):
+    """`2 count²` squares and the regular triangles between them, all edges 1, five faces about each inner vertex; centred, flat. The
+    squares, in a chequerboard, are turned by 60 and 30 degrees; three of their corners that are 1 apart make a triangle."""
+    spacing = math.sqrt(2 + math.sqrt(3))
+    squares = []
+    for i in range(count):
+        for j in range(count):
+            for shift, turn in ((0.0, 60), (0.5, 30)):
+                centre = ((np.array([i, j]) + shift) - (count - 0.5) / 2) * spacing
+                angles = np.radians(turn + 90 * np.arange(4))
+                x, y = centre[:, None] + np.stack([np.cos(angles), np.sin(angles)]) / math.sqrt(2)
+                squares.append(np.stack([x, y, np.zeros(4)], axis=1))
+    points, faces = welded(squares)
+    distances = np.linalg.norm(points[:, None] - points[None], axis=2)
+    beside = [set(np.flatnonzero(np.abs(row - 1) < 1e-6).tolist()) for row in distances]
+    for a in range(len(points)):
+        for b in sorted(beside[a]):
+            for c in sorted(beside[a] & beside[b]):
+                if a < b < c:
+                    is_left = np.cross(points[b] - points[a], points[c] - points[a])[2] > 0
+                    faces.append([a, b, c] if is_left else [a, c, b])
+    return points, faces
+
+
 def welded(polygons):
     """The mesh of polygons given by their corners; corners at the same place become one vertex."""
     indices, points, faces = {}, [], []
