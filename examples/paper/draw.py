@@ -10,7 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
+from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb, to_rgba
+from matplotlib.path import Path
 from PIL import Image
 
 SURFACE = "#dbe4ee"
@@ -106,23 +107,11 @@ def draw(axes, panel, camera):
         axes.add_collection(PolyCollection([shadow[f] for f in panel.faces], facecolors=SHADOW, edgecolors=SHADOW, linewidths=0.6, zorder=0))
     depth = camera.depth(points)
     if panel.has_faces:
-        order = np.argsort([depth[face].mean() for face in panel.faces])
-        colors = shaded(points, panel.faces, panel.face_colors, camera)
-        outlines = EDGE if panel.edges is None and panel.line_width > 0 else colors[order]
-        axes.add_collection(
-            PolyCollection(
-                [flat[panel.faces[k]] for k in order],
-                facecolors=colors[order],
-                edgecolors=outlines,
-                linewidths=panel.line_width or 0.3,
-                joinstyle="round",
-                zorder=1,
-            )
-        )
-    if panel.edges is not None:
+        axes.add_collection(_painted_faces(panel, flat, depth, camera))
+    elif panel.edges is not None:
         edges = np.asarray(panel.edges)
         order = np.argsort(depth[edges].mean(axis=1))
-        colors = panel.edge_colors if isinstance(panel.edge_colors, str) else np.asarray(panel.edge_colors)[order]
+        colors = _edge_colors(panel)[order]
         axes.add_collection(LineCollection(flat[edges[order]], colors=colors, linewidths=panel.line_width, capstyle="round", zorder=2))
     for line, color, width in panel.lines:
         line = camera.flat(line)
@@ -132,7 +121,46 @@ def draw(axes, panel, camera):
         axes.annotate("", end, start, zorder=4, arrowprops={"arrowstyle": "-|>", "color": ANCHOR, "lw": 1.1, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 9})
     if panel.marks is not None:
         at = camera.flat(panel.marks)
-        axes.scatter(at[:, 0], at[:, 1], s=16, color=ANCHOR, edgecolors="white", linewidths=0.6, zorder=5)
+        alpha = [0.25 if panel.has_faces and _is_hidden(mark, panel, flat, depth, camera) else 1.0 for mark in panel.marks]
+        axes.scatter(at[:, 0], at[:, 1], s=16, color=ANCHOR, edgecolors="white", linewidths=0.6, alpha=alpha, zorder=5)
+
+
+def _painted_faces(panel, flat, depth, camera):
+    """The faces from far to near, each followed by its edges where these have colours of their own: nearer faces cover both."""
+    colors = shaded(panel.points, panel.faces, panel.face_colors, camera)
+    edges = {}
+    if panel.edges is not None:
+        edges = {frozenset(edge): color for edge, color in zip(panel.edges, _edge_colors(panel))}
+    has_outlines = panel.edges is None and panel.line_width > 0
+    shapes, fills, strokes, widths = [], [], [], []
+    for k in np.argsort([depth[face].mean() for face in panel.faces]):
+        face = panel.faces[k]
+        shapes.append(flat[face])
+        fills.append((*colors[k], 1))
+        strokes.append(to_rgba(EDGE) if has_outlines else (*colors[k], 1))
+        widths.append(panel.line_width if has_outlines else 0.3)
+        for start, end in zip(face, face[1:] + face[:1]):
+            if frozenset((start, end)) in edges:
+                shapes.append(flat[[start, end]])
+                fills.append((0, 0, 0, 0))
+                strokes.append(edges[frozenset((start, end))])
+                widths.append(panel.line_width)
+    return PolyCollection(shapes, facecolors=fills, edgecolors=strokes, linewidths=widths, joinstyle="round", capstyle="round", zorder=1)
+
+
+def _is_hidden(mark, panel, flat, depth, camera):
+    """Whether a face that the mark is no corner of lies between it and the eye."""
+    at, mark_depth = camera.flat(mark), camera.depth(mark)
+    for face in panel.faces:
+        is_beyond = depth[face].mean() > mark_depth and np.abs(panel.points[face] - mark).max(axis=1).min() > 1e-9
+        if is_beyond and Path(flat[face]).contains_point(at):
+            return True
+    return False
+
+
+def _edge_colors(panel):
+    colors = panel.edge_colors
+    return np.array([to_rgba(colors)] * len(panel.edges)) if isinstance(colors, str) else np.asarray(colors)
 
 
 def extent(panel, camera):
