@@ -99,11 +99,7 @@ def shaded(points, faces, colors, camera):
 def draw(axes, panel, camera):
     points, flat = panel.points, camera.flat(panel.points)
     if panel.floor is not None:
-        slope = np.array([0.35, 0.25])  # the sun stands a little aside, so that the shadow shows
-        ground = points.copy()
-        ground[:, :2] += (points[:, 2:] - panel.floor) * slope
-        ground[:, 2] = panel.floor
-        shadow = camera.flat(ground)
+        shadow = camera.flat(_shadow(panel))
         axes.add_collection(PolyCollection([shadow[f] for f in panel.faces], facecolors=SHADOW, edgecolors=SHADOW, linewidths=0.6, zorder=0))
     depth = camera.depth(points)
     if panel.has_faces:
@@ -163,8 +159,18 @@ def _edge_colors(panel):
     return np.array([to_rgba(colors)] * len(panel.edges)) if isinstance(colors, str) else np.asarray(colors)
 
 
+def _shadow(panel):
+    """Where the points throw their shadows: the sun stands a little aside, so that it shows."""
+    ground = panel.points.copy()
+    ground[:, :2] += (ground[:, 2:] - panel.floor) * np.array([0.25, 0.18])
+    ground[:, 2] = panel.floor
+    return ground
+
+
 def extent(panel, camera):
     shown = [camera.flat(panel.points)]
+    if panel.floor is not None:
+        shown.append(camera.flat(_shadow(panel)))
     shown += [camera.flat(line) for line, _, _ in panel.lines]
     shown += [camera.flat(np.array(arrow)) for arrow in panel.arrows]
     shown = np.concatenate(shown)

@@ -104,3 +104,25 @@ def nearest_shapes(shapes, corners, allow_scale=False):
                 least[is_nearer], index[is_nearer] = squares[is_nearer], which
                 farthest[is_nearer] = distances[is_nearer].max(axis=1)
     return index, farthest
+
+
+def face_normals(points, faces):
+    """The unit normals of polygons in space: the directions of the sums of their cross products."""
+    normals = []
+    for face in faces:
+        corners = points[face] - points[face].mean(axis=0)
+        normals.append(np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0))
+    normals = np.array(normals)
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def face_face_angles(points, faces):
+    """The angle between every two faces that share an edge: 180 degrees if they are level. Faces are oriented alike."""
+    faces_of = {}
+    for k, face in enumerate(faces):
+        for start, end in zip(face, face[1:] + face[:1]):
+            faces_of.setdefault(frozenset((start, end)), []).append(k)
+    pairs = np.array([both for both in faces_of.values() if len(both) == 2])
+    normals = face_normals(points, faces)
+    cosines = np.sum(normals[pairs[:, 0]] * normals[pairs[:, 1]], axis=1)
+    return 180 - np.degrees(np.arccos(np.clip(cosines, -1, 1)))

@@ -128,3 +128,33 @@ def welded(polygons):
             face.append(indices[key])
         faces.append(face)
     return np.array(points, dtype=float), faces
+
+
+def canopy(around, rings, seed):
+    """A random canopy between two rough boundaries: `around * rings` quads about a middle. Smooth random waves lift, push and twist it,
+    the same ones at every resolution, and every vertex is shaken by up to a fifth of its edges. Radii grow evenly by a factor from ring
+    to ring, so that faces are about as wide as long."""
+    random = np.random.RandomState(seed)  # whose numbers are the same in every version of numpy
+    waves = [(k, random.uniform(-1, 1, 3), random.uniform(0, 2 * math.pi, 3), random.uniform(0.5, 2, 3)) for k in (1, 2, 3, 4)]
+    inner, outer = 3.0, 10.0
+    points = []
+    for j in range(rings + 1):
+        share = j / rings
+        for i in range(around):
+            angle = 2 * math.pi * i / around
+            lift, push, twist = (
+                sum(size[c] / k * math.sin(k * angle + phase[c] + 2 * speed[c] * share) for k, size, phase, speed in waves) for c in range(3)
+            )
+            radius = inner * (outer / inner) ** share
+            edge = 2 * math.pi * radius / around
+            radius *= 1 + 0.10 * push
+            angle += 0.5 * share**1.5 + 0.10 * twist
+            height = 4.0 * math.sin(math.pi * 0.75 * share) + 1.2 * share * lift
+            shaken = random.uniform(-0.2, 0.2, 3) * edge
+            points.append([radius * math.cos(angle) + shaken[0], radius * math.sin(angle) + shaken[1], height + 0.5 * shaken[2]])
+    faces = [
+        [around * j + i, around * j + (i + 1) % around, around * (j + 1) + (i + 1) % around, around * (j + 1) + i]
+        for j in range(rings)
+        for i in range(around)
+    ]
+    return np.array(points), faces

@@ -8,6 +8,6 @@
 `solved` maps the names of the models to `solve.Solved`.
 """
 
-from . import fig04, fig05, fig06, fig07, fig08, fig10, fig11
+from . import fig04, fig05, fig06, fig07, fig08, fig09, fig10, fig11
 
-ALL = {module.NUMBER: module for module in (fig04, fig05, fig06, fig07, fig08, fig10, fig11)}
+ALL = {module.NUMBER: module for module in (fig04, fig05, fig06, fig07, fig08, fig09, fig10, fig11)}

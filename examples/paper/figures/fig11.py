@@ -17,7 +17,7 @@ LEAST_ANGLE, MOST_ANGLE = 60, 120
 MARGIN = 1
 #: Against the weight 1000 of the edges.
 ANGLE_WEIGHT, PLANE_WEIGHT = 3000, 3000
-STAGE = "20000 iterations"
+STAGE = "100000 iterations"
 ROWS = {"edges": (), "edges, angles": ("angles",), "edges, planes": ("planes",), "edges, angles, planes": ("angles", "planes")}
 LENGTH_LIMIT, ANGLE_LIMIT, PLANARITY_LIMIT = 5, 20, 2  # the red ends of the colours
 
@@ -28,7 +28,7 @@ def build():
         "angles": {"name": "angles", "type": "Angle", "indices": "faceAngleVertices", "weights": [ANGLE_WEIGHT], "scalars": [angle_range]},
         "planes": {"name": "planes", "type": "Plane", "indices": "faceVertices", "weights": [PLANE_WEIGHT]},
     }
-    models = [fig10.model(name, fig10.WEIGHT, 1000, {STAGE: 20}, [more[kind] for kind in kinds]) for name, kinds in ROWS.items()]
+    models = [fig10.model(name, fig10.WEIGHT, 1000, {STAGE: 100}, [more[kind] for kind in kinds]) for name, kinds in ROWS.items()]
     return {"figure": NUMBER, "title": TITLE, "models": models}, {}
 
 
