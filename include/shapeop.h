@@ -429,6 +429,52 @@ typedef struct shapeop_solve_report {
     unsigned int linear_iterations;
 } shapeop_solve_report;
 
+/**
+ * What recipes take. Start from `shapeop_defaultRecipeOptions`.
+ */
+typedef struct shapeop_recipe_options {
+    /**
+     * In: `sizeof(shapeop_recipe_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * 0, the default: fairness keeps the details of the design; 1: it smooths.
+     */
+    int fairness_kind;
+    /**
+     * The weight of the recipe's own constraints. Default 1.
+     */
+    double weight;
+    /**
+     * The weight that draws each point to where it was; 0 for none. Default 0.05.
+     */
+    double closeness;
+    /**
+     * The weight of fairness; 0, the default, for none.
+     */
+    double fairness;
+    /**
+     * The length that "equalize" draws edges to, in model units; 0, the default: their mean. Other recipes refuse it.
+     */
+    double length;
+    /**
+     * The points that keep their place, `nb_anchors` indices. Default null.
+     */
+    const int *anchors;
+    /**
+     * The number of anchors.
+     */
+    int nb_anchors;
+    /**
+     * 1: all points of the boundary keep their place too. Default 0.
+     */
+    int anchor_boundary;
+    /**
+     * 1: the corners of the boundary keep their place too, where it turns by more than 75 degrees. Default 0.
+     */
+    int anchor_corners;
+} shapeop_recipe_options;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -618,9 +664,40 @@ enum shapeop_err shapeop_editConstraint(struct ShapeOpSolver *op,
                                         int nb_scl);
 
 /**
+ * Replaces the scalars of many constraints of one type, all or none; otherwise as `shapeop_editConstraint`.
+ *
+ * - `scalars`: scalar sets behind each other, `nb_scalars` numbers in all. `nb_scalar_sets` 1: one set for all;
+ *   otherwise one per constraint, each of the same number of scalars, or of shapes.
+ *
+ * # Safety
+ * `constraint_type` is null or ends with a zero; each array is null or readable for its number of values.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_editConstraints(struct ShapeOpSolver *op,
+                                         const char *constraint_type,
+                                         const int *constraint_ids,
+                                         int nb_constraint_ids,
+                                         const double *scalars,
+                                         int nb_scalars,
+                                         int nb_scalar_sets);
+
+/**
  * Sets the weight of a constraint: finite, at least 0. The next solve uses it.
  */
 SHAPEOP_API enum shapeop_err shapeop_setWeight(struct ShapeOpSolver *op, int constraint_id, double weight);
+
+/**
+ * Sets the weights of many constraints, all or none: `nb_weights` 1: the same for all; otherwise one per constraint.
+ *
+ * # Safety
+ * Each array is null or readable for its number of values.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_setWeights(struct ShapeOpSolver *op,
+                                    const int *constraint_ids,
+                                    int nb_constraint_ids,
+                                    const double *weights,
+                                    int nb_weights);
 
 /**
  * Removes a constraint. Its id is never given out again; arrays with one entry per constraint keep its place.
@@ -761,6 +838,104 @@ SHAPEOP_API enum shapeop_err shapeop_energy(struct ShapeOpSolver *op, double *ou
  * `out` is null or writable for `nb` doubles.
  */
 SHAPEOP_API enum shapeop_err shapeop_getViolations(struct ShapeOpSolver *op, double *out, int nb);
+
+/**
+ * Makes `op` the solver of a problem, whose JSON form `docs/problem.schema.json` states: everything in it is replaced,
+ * and it is initialised in the problem's mode. Thread count and linear solver stay. `options` may be null; else its
+ * `struct_size` is set, and it receives the problem's stopping rules for `shapeop_solveUntil`.
+ *
+ * A refusal names the place in the text, such as `constraints[17].indices[2]`, and leaves the solver as it was.
+ *
+ * # Safety
+ * `json` is null or ends with a zero. `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_setProblem(struct ShapeOpSolver *op,
+                                    const char *json,
+                                    struct shapeop_solve_options *options);
+
+/**
+ * The JSON form of a problem, checked, with every default written out and a line per point, constraint, force and face;
+ * null if the text is refused. It is the calling thread's own, valid until that thread's next call of this function or
+ * of `shapeop_recipe`.
+ *
+ * # Safety
+ * `json` is null or ends with a zero.
+ */
+SHAPEOP_API const char *shapeop_problemText(const char *json);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_defaultRecipeOptions(struct shapeop_recipe_options *options);
+
+/**
+ * The problem that a recipe makes of a mesh, as JSON for `shapeop_setProblem`: "planarize", "circularize", "smooth",
+ * "regularize" or "equalize" (`shapeop_recipeName`); null if it is refused. Its points are those of the mesh in their
+ * order. The text is the calling thread's own, valid until that thread's next call of this function or of
+ * `shapeop_problemText`.
+ *
+ * - `points`: `x0 y0 z0 x1 ...` in model units, `nb_points` points.
+ * - `face_indices`: the point indices of all faces behind each other, `nb_face_indices` in all.
+ * - `counts`: the number of corners of each face. `nb_counts` 1: the same for all; otherwise one per face.
+ * - `options`: null for the defaults.
+ *
+ * # Safety
+ * `name` is null or ends with a zero; each array is null or readable for its number of values. `options` is null, or its
+ * `struct_size` is set and it is readable for so many bytes, and its `anchors` for `nb_anchors` ints.
+ */
+SHAPEOP_API
+const char *shapeop_recipe(const char *name,
+                           const double *points,
+                           int nb_points,
+                           const int *face_indices,
+                           int nb_face_indices,
+                           const int *counts,
+                           int nb_counts,
+                           const struct shapeop_recipe_options *options);
+
+/**
+ * The number of recipes, or -1.
+ */
+SHAPEOP_API int shapeop_recipeCount(void);
+
+/**
+ * The name of the recipe `index`; null if there is none. Valid as long as the library is loaded.
+ */
+SHAPEOP_API const char *shapeop_recipeName(int index);
+
+/**
+ * Measures every face: "planarity" (the distance of the diagonals of a quad over their mean length, of other polygons the
+ * greatest distance from the best-fit plane over the mean edge; 0.01 is one percent), "plane_distance" (model units),
+ * "circularity" and "regularity" (over the mean edge), "mean_edge" (model units). `shapeop_measureName` lists the names.
+ * Faces are as in `shapeop_recipe`; `out` has one number per face, and `nb` is the number of faces.
+ *
+ * # Safety
+ * `measure` is null or ends with a zero; each array is null or readable, `out` writable, for its number of values.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_measureFaces(const char *measure,
+                                      const double *points,
+                                      int nb_points,
+                                      const int *face_indices,
+                                      int nb_face_indices,
+                                      const int *counts,
+                                      int nb_counts,
+                                      double *out,
+                                      int nb);
+
+/**
+ * The number of measures of faces, or -1.
+ */
+SHAPEOP_API int shapeop_measureCount(void);
+
+/**
+ * The name of the measure `index`; null if there is none. Valid as long as the library is loaded.
+ */
+SHAPEOP_API const char *shapeop_measureName(int index);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -129,10 +129,91 @@ pub unsafe extern "C" fn shapeop_editConstraint(
     }))
 }
 
+/// Replaces the scalars of many constraints of one type, all or none; otherwise as `shapeop_editConstraint`.
+///
+/// - `scalars`: scalar sets behind each other, `nb_scalars` numbers in all. `nb_scalar_sets` 1: one set for all;
+///   otherwise one per constraint, each of the same number of scalars, or of shapes.
+///
+/// # Safety
+/// `constraint_type` is null or ends with a zero; each array is null or readable for its number of values.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn shapeop_editConstraints(
+    op: *mut ShapeOpSolver,
+    constraint_type: *const c_char,
+    constraint_ids: *const c_int,
+    nb_constraint_ids: c_int,
+    scalars: *const f64,
+    nb_scalars: c_int,
+    nb_scalar_sets: c_int,
+) -> shapeop_err {
+    code(guard(op, |solver| {
+        // SAFETY: the caller vouches for the text and for the number of values of each array.
+        let (type_name, ids, scalars) = unsafe {
+            (
+                text("constraint_type", constraint_type)?,
+                slice("constraint_ids", constraint_ids, length("nb_constraint_ids", nb_constraint_ids)?)?,
+                slice("scalars", scalars, length("nb_scalars", nb_scalars)?)?,
+            )
+        };
+        TypeIndex::named(&type_name)?.info().check_editable()?;
+        let ids = self::constraint_ids(ids)?;
+        let mut counts = Vec::with_capacity(ids.len());
+        for (i, &id) in ids.iter().enumerate() {
+            let check = solver.check_editable(&type_name, id);
+            check.map_err(|error| error.at(format!("constraint_ids[{i}]")))?;
+            counts.push(solver.constraint(id).map_or(0, |view| view.indices.len()));
+        }
+        let set_count = length("nb_scalar_sets", nb_scalar_sets)?;
+        let scalar_counts = scalar_counts(&type_name, &counts, scalars.len(), set_count)?;
+        let mut at = 0;
+        let mut edits = Vec::with_capacity(ids.len());
+        for (i, &id) in ids.iter().enumerate() {
+            let set = match *scalar_counts.as_slice() {
+                [] => &[],
+                [_] => scalars,
+                _ => &scalars[at..at + scalar_counts[i]],
+            };
+            at += set.len();
+            edits.push((id, set));
+        }
+        solver.edit_constraints(&type_name, &edits)
+    }))
+}
+
 /// Sets the weight of a constraint: finite, at least 0. The next solve uses it.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_setWeight(op: *mut ShapeOpSolver, constraint_id: c_int, weight: f64) -> shapeop_err {
     code(guard(op, |solver| solver.set_weight(self::constraint_id(constraint_id)?, weight)))
+}
+
+/// Sets the weights of many constraints, all or none: `nb_weights` 1: the same for all; otherwise one per constraint.
+///
+/// # Safety
+/// Each array is null or readable for its number of values.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn shapeop_setWeights(
+    op: *mut ShapeOpSolver,
+    constraint_ids: *const c_int,
+    nb_constraint_ids: c_int,
+    weights: *const f64,
+    nb_weights: c_int,
+) -> shapeop_err {
+    code(guard(op, |solver| {
+        // SAFETY: the caller vouches for the number of values of each array.
+        let (ids, weights) = unsafe {
+            (
+                slice("constraint_ids", constraint_ids, length("nb_constraint_ids", nb_constraint_ids)?)?,
+                slice("weights", weights, length("nb_weights", nb_weights)?)?,
+            )
+        };
+        let ids = self::constraint_ids(ids)?;
+        if weights.len() != 1 && weights.len() != ids.len() {
+            let reason = format!("expected 1 or {}, found {}", ids.len(), weights.len());
+            return Err(Error::new(Status::InvalidArgumentLength, reason).at("nb_weights"));
+        }
+        let weights = ids.into_iter().zip(weights.iter().copied().cycle());
+        solver.set_weights(&weights.collect::<Vec<_>>())
+    }))
 }
 
 /// Removes a constraint. Its id is never given out again; arrays with one entry per constraint keep its place.
@@ -192,7 +273,7 @@ impl Bulk<'_> {
             let error = Error::new(Status::IndexOutOfRange, reason).at(format!("indices[{place}]"));
             return Err(error.at(format!("constraint {} (\"{}\")", first_id + constraint, self.type_name)));
         }
-        let scalar_counts = self.scalar_counts()?;
+        let scalar_counts = scalar_counts(self.type_name, &self.counts, self.scalars.len(), self.scalar_set_count)?;
         let Self { type_name, counts, weights, scalars, .. } = self;
         let counts = &counts;
         solver.add_constraints(NewConstraints {
@@ -216,30 +297,35 @@ impl Bulk<'_> {
         }
         (self.counts.len(), place)
     }
+}
 
-    /// The number of scalars of each set.
-    fn scalar_counts(&self) -> Result<Vec<usize>> {
-        let (set_count, constraint_count) = (self.scalar_set_count, self.counts.len());
-        if set_count <= 1 {
-            return Ok(vec![self.scalars.len(); set_count]);
-        }
-        let misfit = |name: &str, expected: String, found: usize| {
-            Err(Error::new(Status::InvalidArgumentLength, format!("expected {expected}, found {found}")).at(name))
-        };
-        if set_count != constraint_count {
-            return misfit("nb_scalar_sets", format!("0, 1 or {constraint_count}"), set_count);
-        }
-        // What one point (of types that take shapes) or one constraint has.
-        let has_shapes = TypeIndex::named(self.type_name)?.info().scalars == Scalars::Shapes;
-        let unit_count = if has_shapes { self.indices.len() } else { constraint_count };
-        if !self.scalars.len().is_multiple_of(unit_count.max(1)) {
-            let per = if has_shapes { "one point index" } else { "one constraint" };
-            let expected = format!("a multiple of {unit_count}, as every set has as many numbers for {per}");
-            return misfit("nb_scalars", expected, self.scalars.len());
-        }
-        let per_unit = self.scalars.len() / unit_count.max(1);
-        Ok(self.counts.iter().map(|count| per_unit * if has_shapes { *count } else { 1 }).collect())
+/// The number of scalars of each set; `index_counts` are the numbers of indices of the constraints.
+fn scalar_counts(type_name: &str, index_counts: &[usize], scalar_count: usize, set_count: usize) -> Result<Vec<usize>> {
+    if set_count <= 1 {
+        return Ok(vec![scalar_count; set_count]);
     }
+    let misfit = |name: &str, expected: String, found: usize| {
+        Err(Error::new(Status::InvalidArgumentLength, format!("expected {expected}, found {found}")).at(name))
+    };
+    if set_count != index_counts.len() {
+        return misfit("nb_scalar_sets", format!("0, 1 or {}", index_counts.len()), set_count);
+    }
+    // What one point (of types that take shapes) or one constraint has.
+    let has_shapes = TypeIndex::named(type_name)?.info().scalars == Scalars::Shapes;
+    let unit_count = if has_shapes { index_counts.iter().sum() } else { index_counts.len() };
+    if !scalar_count.is_multiple_of(unit_count.max(1)) {
+        let per = if has_shapes { "one point index" } else { "one constraint" };
+        let expected = format!("a multiple of {unit_count}, as every set has as many numbers for {per}");
+        return misfit("nb_scalars", expected, scalar_count);
+    }
+    let per_unit = scalar_count / unit_count.max(1);
+    Ok(index_counts.iter().map(|count| per_unit * if has_shapes { *count } else { 1 }).collect())
+}
+
+/// Constraint ids, which only the solver can check further.
+fn constraint_ids(ids: &[c_int]) -> Result<Vec<usize>> {
+    let all = ids.iter().enumerate();
+    all.map(|(i, &id)| constraint_id(id).map_err(|error| error.at(format!("constraint_ids[{i}]")))).collect()
 }
 
 /// The number of indices of each constraint.

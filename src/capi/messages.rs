@@ -5,9 +5,11 @@
 //! reads what another thread's call on a solver left; and a refusal as busy stays with the thread that was refused.
 
 use std::cell::RefCell;
-use std::ffi::{CStr, CString, c_char};
+use std::ffi::{CString, c_char};
+use std::ptr;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::thread::LocalKey;
 
 use super::handles::{self, Handle};
 use crate::error::Error;
@@ -33,6 +35,8 @@ thread_local! {
     static LAST: RefCell<(Handle, Message)> = RefCell::new((Handle::NONE, Message::default()));
     /// The text that `shapeop_lastError` handed out.
     static SHOWN: RefCell<CString> = RefCell::default();
+    /// The problem that was handed out last.
+    static SHOWN_PROBLEM: RefCell<CString> = RefCell::default();
 }
 
 /// Keeps the message of a call with its solver.
@@ -68,10 +72,20 @@ fn last(handle: Handle) -> String {
 
 /// [`last`] as C text that stays valid until this thread's next call.
 pub(super) fn show_last(handle: Handle) -> *const c_char {
-    let text = CString::new(last(handle).replace('\0', " ")).unwrap_or_default();
+    show(&SHOWN, last(handle).replace('\0', " ")).unwrap_or(c"".as_ptr())
+}
+
+/// The JSON form of a problem as C text that stays valid until this thread's next call; JSON holds no zero.
+pub(super) fn show_problem(json: String) -> *const c_char {
+    show(&SHOWN_PROBLEM, json).unwrap_or(ptr::null())
+}
+
+/// Keeps `text` in a place of this thread; `None` if the thread is ending.
+fn show(place: &'static LocalKey<RefCell<CString>>, text: String) -> Option<*const c_char> {
+    let text = CString::new(text).unwrap_or_default();
     let show = |shown: &RefCell<CString>| {
         *shown.borrow_mut() = text;
         shown.borrow().as_ptr()
     };
-    SHOWN.try_with(show).unwrap_or(CStr::as_ptr(c""))
+    place.try_with(show).ok()
 }

@@ -182,7 +182,7 @@ fn of_type(index: c_int) -> Result<(&'static TypeInfo, &'static Texts)> {
     types().nth(at).zip(texts.get(at)).ok_or_else(|| out_of_range("index", index, texts.len(), "constraint types"))
 }
 
-fn position(name: &str, index: c_int, count: usize, things: &str) -> Result<usize> {
+pub(super) fn position(name: &str, index: c_int, count: usize, things: &str) -> Result<usize> {
     let found = usize::try_from(index).ok().filter(|index| *index < count);
     found.ok_or_else(|| out_of_range(name, index, count, things))
 }

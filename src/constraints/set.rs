@@ -218,10 +218,19 @@ impl ConstraintSet {
     /// # Errors
     /// The id is no constraint, or the weight is negative or not finite.
     pub fn set_weight(&mut self, id: ConstraintId, weight: f64) -> Result<bool> {
+        self.check_weight(id, weight)?;
         let place = self.place(id)?;
-        check_weight(weight)?;
         let old = &mut self.groups[place.type_index.0 as usize].weights[place.slot as usize];
         Ok(std::mem::replace(old, weight) != weight)
+    }
+
+    /// Refuses what [`ConstraintSet::set_weight`] would refuse.
+    ///
+    /// # Errors
+    /// As [`ConstraintSet::set_weight`].
+    pub fn check_weight(&self, id: ConstraintId, weight: f64) -> Result<()> {
+        self.place(id)?;
+        check_weight(weight)
     }
 
     /// Removes a constraint; its id is never given out again.

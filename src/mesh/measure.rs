@@ -13,6 +13,18 @@ use crate::error::{Error, Result, Status};
 /// a quad below it are parallel but for round-off; the distance of one from the other's end then stands in.
 const MIN_SINE: f64 = 1e-9;
 
+/// A measure of a face, given its corners.
+pub type FaceMeasure = fn(&[DVec3]) -> f64;
+
+/// Every measure of faces with its name, for programs that let people choose.
+pub const FACE_MEASURES: [(&str, FaceMeasure); 5] = [
+    ("planarity", planarity),
+    ("plane_distance", plane_distance),
+    ("circularity", circularity),
+    ("regularity", regularity),
+    ("mean_edge", mean_edge),
+];
+
 /// The extremes and the mean of a list of values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {

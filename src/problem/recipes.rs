@@ -78,16 +78,28 @@ impl Default for RecipeOptions {
     }
 }
 
+/// A recipe: from a mesh, an edge length (that only [`equalize`] takes) and options to a problem.
+pub type Recipe = fn(&Mesh, Option<f64>, &RecipeOptions) -> Result<Problem>;
+
+/// Every recipe with its name, for programs that let people choose.
+pub const RECIPES: [(&str, Recipe); 5] = [
+    ("planarize", |mesh, _, options| planarize(mesh, options)),
+    ("circularize", |mesh, _, options| circularize(mesh, options)),
+    ("smooth", |mesh, _, options| smooth(mesh, options)),
+    ("regularize", |mesh, _, options| regularize(mesh, options)),
+    ("equalize", equalize),
+];
+
 /// Makes every face planar: a `Plane` per face. Triangles are planar as they are and get none.
 ///
 /// # Errors
 /// As [`Mesh::check_polygons`]; the mesh has no faces; a weight is negative or not finite; an anchor is out of range.
 pub fn planarize(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
-    let mut recipe = Recipe::new(mesh, options)?;
+    let mut draft = Draft::new(mesh, options)?;
     for face in mesh.faces.iter().filter(|face| face.len() > 3) {
-        recipe.add("Plane", face.clone(), options.weight, None);
+        draft.add("Plane", face.clone(), options.weight, None);
     }
-    recipe.finish()
+    draft.finish()
 }
 
 /// Gives every face a circumscribed circle, which makes it planar too: a `Circle` per face, none for triangles.
@@ -95,11 +107,11 @@ pub fn planarize(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
 /// # Errors
 /// As [`planarize`].
 pub fn circularize(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
-    let mut recipe = Recipe::new(mesh, options)?;
+    let mut draft = Draft::new(mesh, options)?;
     for face in mesh.faces.iter().filter(|face| face.len() > 3) {
-        recipe.add("Circle", face.clone(), options.weight, None);
+        draft.add("Circle", face.clone(), options.weight, None);
     }
-    recipe.finish()
+    draft.finish()
 }
 
 /// Smooths the mesh: a `Laplacian` per point, inside against all neighbours, on the boundary along the boundary, so that
@@ -108,9 +120,9 @@ pub fn circularize(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
 /// # Errors
 /// As [`planarize`].
 pub fn smooth(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
-    let mut recipe = Recipe::new(mesh, options)?;
-    recipe.add_laplacians("Laplacian", options.weight);
-    recipe.finish()
+    let mut draft = Draft::new(mesh, options)?;
+    draft.add_laplacians("Laplacian", options.weight);
+    draft.finish()
 }
 
 /// Draws every face towards a regular polygon of its number of corners, in any place and size: a `Similarity` per face.
@@ -118,12 +130,12 @@ pub fn smooth(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
 /// # Errors
 /// As [`planarize`].
 pub fn regularize(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
-    let mut recipe = Recipe::new(mesh, options)?;
+    let mut draft = Draft::new(mesh, options)?;
     for face in &mesh.faces {
         let shape = regular_polygon(face.len()).iter().flat_map(|corner| corner.to_array()).collect();
-        recipe.add("Similarity", face.clone(), options.weight, Some(shape));
+        draft.add("Similarity", face.clone(), options.weight, Some(shape));
     }
-    recipe.finish()
+    draft.finish()
 }
 
 /// Draws every edge towards one length: an `EdgeStrain` per edge, whose length is edited to `length`, by default the mean
@@ -132,7 +144,7 @@ pub fn regularize(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
 /// # Errors
 /// As [`planarize`]; `length` is not finite and above 0, or not given for a mesh whose edges all have length 0.
 pub fn equalize(mesh: &Mesh, length: Option<f64>, options: &RecipeOptions) -> Result<Problem> {
-    let mut recipe = Recipe::new(mesh, options)?;
+    let mut draft = Draft::new(mesh, options)?;
     let rest_lengths = edge_lengths(mesh)?;
     let length = length.unwrap_or_else(|| Spread::of(&rest_lengths).mean);
     let is_length = length > 0.0 && length.is_finite();
@@ -140,15 +152,15 @@ pub fn equalize(mesh: &Mesh, length: Option<f64>, options: &RecipeOptions) -> Re
         let reason = format!("expected a finite number above 0, found {length}");
         return Err(Error::new(Status::InvalidValue, reason).at("length"));
     }
-    let edges = recipe.topology.edges().to_vec();
+    let edges = draft.topology.edges().to_vec();
     for (edge, rest_length) in edges.into_iter().zip(rest_lengths) {
         // Where the rest length is 0, EdgeStrain measures by the edited length instead.
         let measure = if rest_length > 0.0 { rest_length } else { length };
         let weight = options.weight * length * (length / measure);
-        recipe.add("EdgeStrain", edge.to_vec(), weight, Some(vec![length, 1.0, 1.0]));
+        draft.add("EdgeStrain", edge.to_vec(), weight, Some(vec![length, 1.0, 1.0]));
     }
-    recipe.problem.edges = recipe.topology.edges().to_vec();
-    recipe.finish()
+    draft.problem.edges = draft.topology.edges().to_vec();
+    draft.finish()
 }
 
 /// The boundary points where the boundary turns by more than 75 degrees.
@@ -196,14 +208,14 @@ fn angle_rad(a: DVec3, b: DVec3) -> f64 {
 }
 
 /// A problem in the making.
-struct Recipe<'a> {
+struct Draft<'a> {
     mesh: &'a Mesh,
     options: &'a RecipeOptions,
     topology: Topology,
     problem: Problem,
 }
 
-impl<'a> Recipe<'a> {
+impl<'a> Draft<'a> {
     fn new(mesh: &'a Mesh, options: &'a RecipeOptions) -> Result<Self> {
         mesh.check_polygons()?;
         if mesh.faces.is_empty() {

@@ -130,14 +130,22 @@ impl Solver {
     /// # Errors
     /// What [`Problem::check`] refuses, or what initialising refuses.
     pub fn from_problem(problem: &Problem) -> Result<Self> {
-        let (points, constraints, forces) = problem.assemble()?;
-        let mut solver = Self { points, constraints, forces, ..Self::default() };
-        solver.set_acceleration(problem.settings.acceleration, problem.settings.acceleration_memory)?;
-        match problem.mode {
-            Mode::Static => solver.init()?,
-            Mode::Dynamic => solver.init_dynamic(problem.masses, problem.damping, problem.timestep)?,
-        }
+        let mut solver = Self::assembled(problem)?;
+        solver.init_as(problem)?;
         Ok(solver)
+    }
+
+    /// Replaces everything by `problem`, initialised in its mode; thread count and linear solver stay.
+    ///
+    /// # Errors
+    /// As [`Solver::from_problem`]; nothing changes then.
+    pub fn set_problem(&mut self, problem: &Problem) -> Result<()> {
+        let mut new = Self::assembled(problem)?;
+        (new.thread_count, new.linear_solver) = (self.thread_count, self.linear_solver);
+        new.pool = self.pool.clone();
+        new.init_as(problem)?;
+        *self = new;
+        Ok(())
     }
 
     /// The current points.
@@ -166,6 +174,21 @@ impl Solver {
         self.points.clear();
         self.points.extend_from_slice(points);
         Ok(())
+    }
+
+    /// A solver for `problem` that is not initialised.
+    fn assembled(problem: &Problem) -> Result<Self> {
+        let (points, constraints, forces) = problem.assemble()?;
+        let mut solver = Self { points, constraints, forces, ..Self::default() };
+        solver.set_acceleration(problem.settings.acceleration, problem.settings.acceleration_memory)?;
+        Ok(solver)
+    }
+
+    fn init_as(&mut self, problem: &Problem) -> Result<()> {
+        match problem.mode {
+            Mode::Static => self.init(),
+            Mode::Dynamic => self.init_dynamic(problem.masses, problem.damping, problem.timestep),
+        }
     }
 
     /// The number of constraint ids given out, removed ones included.
@@ -222,6 +245,18 @@ impl Solver {
         Ok(())
     }
 
+    /// Replaces the scalars of several constraints of one type, all or none.
+    ///
+    /// # Errors
+    /// See [`ConstraintSet::edit`]; the place is `edits[i]`.
+    pub fn edit_constraints(&mut self, type_name: &str, edits: &[(ConstraintId, &[f64])]) -> Result<()> {
+        for (i, (id, scalars)) in edits.iter().enumerate() {
+            let check = self.constraints.check_edit(type_name, *id, scalars);
+            check.map_err(|error| error.at(format!("edits[{i}]")))?;
+        }
+        edits.iter().try_for_each(|(id, scalars)| self.edit_constraint(type_name, *id, scalars))
+    }
+
     /// Sets the weight of a constraint.
     ///
     /// # Errors
@@ -231,6 +266,17 @@ impl Solver {
             self.invalidate();
         }
         Ok(())
+    }
+
+    /// Sets the weights of several constraints, all or none.
+    ///
+    /// # Errors
+    /// See [`Solver::set_weight`]; the place is `weights[i]`.
+    pub fn set_weights(&mut self, weights: &[(ConstraintId, f64)]) -> Result<()> {
+        for (i, &(id, weight)) in weights.iter().enumerate() {
+            self.constraints.check_weight(id, weight).map_err(|error| error.at(format!("weights[{i}]")))?;
+        }
+        weights.iter().try_for_each(|&(id, weight)| self.set_weight(id, weight))
     }
 
     /// Removes a constraint; its id is never given out again.

@@ -1,6 +1,7 @@
 //! What a solve was asked for and what it found.
 
 use super::{LinearSolver, Solver};
+use crate::problem::Settings;
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +17,12 @@ pub struct SolveOptions {
 
 impl Default for SolveOptions {
     fn default() -> Self {
-        let settings = crate::problem::Settings::default();
+        Self::from(&Settings::default())
+    }
+}
+
+impl From<&Settings> for SolveOptions {
+    fn from(settings: &Settings) -> Self {
         Self {
             max_iterations: settings.max_iterations,
             tolerance: settings.tolerance,

@@ -1,36 +1,58 @@
-//! `cargo xtask header`.
+//! `cargo xtask header`: what is made from the sources of the C ABI.
 
 use std::fs;
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 
-use crate::shell;
+use crate::{declarations, shell};
 
-/// The sources of the header, in the order in which it groups functions.
-const SOURCES: [&str; 7] = ["errors", "handles", "solver", "points", "constraints", "forces", "registry"];
-/// The last group.
-const LAST_SOURCE: &str = "report";
+/// The sources of the C ABI, in the order in which the header groups functions.
+const SOURCES: [&str; 9] =
+    ["errors", "handles", "solver", "points", "constraints", "forces", "registry", "report", "problem"];
 
-/// Writes the header, or only compares.
+/// Writes the header and the declarations for other languages, or only compares.
 pub fn run(check: bool) -> Result<()> {
     let root = shell::root();
-    let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).map_err(anyhow::Error::msg)?;
+    let source = |name: &&str| root.join("src/capi").join(name).with_extension("rs");
+    let sources: Vec<PathBuf> = SOURCES.iter().map(source).collect();
+    let mut files = vec![("include/shapeop.h", header(&sources)?)];
+    files.extend(declarations::files(&sources)?);
+    let mut outdated = Vec::new();
+    for (name, text) in files {
+        let file = root.join(name);
+        if !check {
+            if let Some(folder) = file.parent() {
+                fs::create_dir_all(folder)?;
+            }
+            fs::write(&file, text)?;
+            continue;
+        }
+        let committed = fs::read_to_string(&file).with_context(|| format!("{} could not be read", file.display()))?;
+        if committed != text {
+            println!("{name}:");
+            show_difference(&committed, &text);
+            outdated.push(name);
+        }
+    }
+    if outdated.is_empty() {
+        return Ok(());
+    }
+    bail!("{} not what src/capi says: run `cargo xtask header` and commit the difference", outdated.join(", "))
+}
+
+fn header(sources: &[PathBuf]) -> Result<String> {
+    let config = cbindgen::Config::from_file(shell::root().join("cbindgen.toml")).map_err(anyhow::Error::msg)?;
     let mut builder = cbindgen::Builder::new().with_config(config);
-    for source in SOURCES.iter().chain([&LAST_SOURCE]) {
-        builder = builder.with_src(root.join("src/capi").join(source).with_extension("rs"));
+    for source in sources {
+        builder = builder.with_src(source);
     }
     let mut text = Vec::new();
     builder.generate().context("src/capi could not be read as C functions")?.write(&mut text);
-    let text = String::from_utf8(text)?;
-    let file = root.join("include/shapeop.h");
-    if !check {
-        fs::write(&file, text)?;
-        return Ok(());
-    }
-    let committed = fs::read_to_string(&file).with_context(|| format!("{} could not be read", file.display()))?;
-    if committed == text {
-        return Ok(());
-    }
+    Ok(String::from_utf8(text)?)
+}
+
+fn show_difference(committed: &str, text: &str) {
     let (old, new): (Vec<_>, Vec<_>) = (committed.lines().collect(), text.lines().collect());
     for line in old.iter().filter(|line| !new.contains(line)) {
         println!("-{line}");
@@ -38,5 +60,4 @@ pub fn run(check: bool) -> Result<()> {
     for line in new.iter().filter(|line| !old.contains(line)) {
         println!("+{line}");
     }
-    bail!("include/shapeop.h is not what src/capi says: run `cargo xtask header` and commit the difference")
 }

@@ -1,6 +1,7 @@
 //! `cargo xtask`: set-up and checks. No product code.
 
 mod bench;
+mod declarations;
 mod dist;
 mod docs;
 mod header;
@@ -31,9 +32,9 @@ enum Command {
         #[arg(long, default_value = "release")]
         profile: String,
     },
-    /// Write include/shapeop.h from the doc comments in src/capi.
+    /// Write what is made from src/capi: include/shapeop.h, and the declarations for Python and C#.
     Header {
-        /// Write nothing; fail with the difference if the committed header is another one.
+        /// Write nothing; fail with the difference if the committed files are others.
         #[arg(long)]
         check: bool,
     },

@@ -1,10 +1,14 @@
-"""The declarations of the C ABI for ctypes."""
+"""The C functions of the library, declared for ctypes. Python 2.7 and 3.
+
+Generated from the sources of the library: do not edit. include/shapeop.h documents the functions.
+"""
 
 import ctypes
-from ctypes import POINTER, c_char_p, c_double, c_int, c_uint, c_void_p
+from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int, c_uint, c_void_p
 
 ABI_VERSION = 1
 
+# shapeop_err
 SO_SUCCESS = 0
 SO_INVALID_CONSTRAINT_TYPE = 1
 SO_INVALID_ARGUMENT_LENGTH = 2
@@ -20,22 +24,30 @@ SO_NULL_POINTER = 23
 SO_INVALID_INPUT = 24
 SO_TOO_LARGE = 25
 SO_INTERNAL = 26
+
+# shapeop_acceleration
+SO_ACCELERATION_NONE = 0
+SO_ACCELERATION_ANDERSON = 1
+SO_ACCELERATION_QUASI_NEWTON = 2
+SO_ACCELERATION_AUTOMATIC = 3
+
+# shapeop_linear_solver
+SO_LINEAR_SOLVER_AUTOMATIC = 0
+SO_LINEAR_SOLVER_DIRECT = 1
+SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS = 2
+
+# shapeop_projection
 SO_PROJECTION_NEAREST = 0
 SO_PROJECTION_FEASIBLE = 1
 SO_PROJECTION_APPROXIMATE = 2
+
+# shapeop_outcome
 SO_OUTCOME_CONVERGED = 0
 SO_OUTCOME_ITERATION_LIMIT = 1
 SO_OUTCOME_TIME_BUDGET = 2
 SO_OUTCOME_CANCELLED = 3
 SO_OUTCOME_STALLED = 4
 SO_OUTCOME_UNBOUNDED = 5
-SO_LINEAR_SOLVER_AUTOMATIC = 0
-SO_LINEAR_SOLVER_DIRECT = 1
-SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS = 2
-SO_ACCELERATION_NONE = 0
-SO_ACCELERATION_ANDERSON = 1
-SO_ACCELERATION_QUASI_NEWTON = 2
-SO_ACCELERATION_AUTOMATIC = 3
 
 
 class shapeop_constraint_type(ctypes.Structure):
@@ -73,18 +85,6 @@ class shapeop_solve_options(ctypes.Structure):
     ]
 
 
-class shapeop_progress(ctypes.Structure):
-    _fields_ = [
-        ("struct_size", c_uint),
-        ("iteration", c_uint),
-        ("energy", c_double),
-        ("largest_move", c_double),
-    ]
-
-
-shapeop_progress_callback = ctypes.CFUNCTYPE(c_int, POINTER(shapeop_progress), c_void_p)
-
-
 class shapeop_solve_report(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint),
@@ -111,6 +111,15 @@ class shapeop_solve_report(ctypes.Structure):
     ]
 
 
+class shapeop_progress(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("iteration", c_uint),
+        ("energy", c_double),
+        ("largest_move", c_double),
+    ]
+
+
 class shapeop_recipe_options(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint),
@@ -126,85 +135,119 @@ class shapeop_recipe_options(ctypes.Structure):
     ]
 
 
-def declare(library):
-    """Sets the argument and result types of every function of `library`."""
-    doubles, ints = POINTER(c_double), POINTER(c_int)
-    functions = [
-        ("shapeop_version", c_char_p, []),
-        ("shapeop_abiVersion", c_int, []),
-        ("shapeop_lastError", c_char_p, [c_void_p]),
-        ("shapeop_errorText", c_char_p, [c_int]),
-        ("shapeop_create", c_void_p, []),
-        ("shapeop_delete", None, [c_void_p]),
-        ("shapeop_init", c_int, [c_void_p]),
-        ("shapeop_initDynamic", c_int, [c_void_p, c_double, c_double, c_double]),
-        ("shapeop_solve", c_int, [c_void_p, c_uint]),
-        ("shapeop_setTimeStep", None, [c_void_p, c_double]),
-        ("shapeop_setDamping", None, [c_void_p, c_double]),
-        ("shapeop_setThreadCount", c_int, [c_void_p, c_int]),
-        ("shapeop_setAcceleration", c_int, [c_void_p, c_int, c_uint]),
-        ("shapeop_setLinearSolver", c_int, [c_void_p, c_int]),
-        ("shapeop_setPoints", None, [c_void_p, doubles, c_int]),
-        ("shapeop_getPoints", None, [c_void_p, doubles, c_int]),
-        ("shapeop_pointCount", c_int, [c_void_p]),
-        ("shapeop_unconstrainedCount", c_int, [c_void_p]),
-        ("shapeop_addConstraint", c_int, [c_void_p, c_char_p, ints, c_int, c_double]),
-        (
-            "shapeop_addConstraints",
-            c_int,
-            [c_void_p, c_char_p, ints, c_int, ints, c_int, doubles, c_int, doubles, c_int, c_int, c_uint, ints],
-        ),
-        ("shapeop_editConstraint", c_int, [c_void_p, c_char_p, c_int, doubles, c_int]),
-        ("shapeop_editConstraints", c_int, [c_void_p, c_char_p, ints, c_int, doubles, c_int, c_int]),
-        ("shapeop_setWeight", c_int, [c_void_p, c_int, c_double]),
-        ("shapeop_setWeights", c_int, [c_void_p, ints, c_int, doubles, c_int]),
-        ("shapeop_removeConstraint", c_int, [c_void_p, c_int]),
-        ("shapeop_constraintCount", c_int, [c_void_p]),
-        ("shapeop_isConstraint", c_int, [c_void_p, c_int]),
-        ("shapeop_isDegenerate", c_int, [c_void_p, c_int]),
-        ("shapeop_addGravityForce", c_int, [c_void_p, doubles]),
-        ("shapeop_addVertexForce", c_int, [c_void_p, doubles, c_int]),
-        ("shapeop_editVertexForce", None, [c_void_p, c_int, doubles, c_int]),
-        ("shapeop_removeForce", c_int, [c_void_p, c_int]),
-        ("shapeop_forceCount", c_int, [c_void_p]),
-        ("shapeop_isForce", c_int, [c_void_p, c_int]),
-        ("shapeop_constraintTypeCount", c_int, []),
-        ("shapeop_constraintType", c_int, [c_int, POINTER(shapeop_constraint_type)]),
-        ("shapeop_constraintScalar", c_int, [c_int, c_int, POINTER(shapeop_constraint_scalar)]),
-        ("shapeop_constraintIndexName", c_char_p, [c_int, c_int]),
-        ("shapeop_defaultSolveOptions", c_int, [POINTER(shapeop_solve_options)]),
-        (
-            "shapeop_solveUntil",
-            c_int,
-            [
-                c_void_p,
-                POINTER(shapeop_solve_options),
-                shapeop_progress_callback,
-                c_void_p,
-                POINTER(shapeop_solve_report),
-            ],
-        ),
-        ("shapeop_energy", c_int, [c_void_p, doubles]),
-        ("shapeop_getViolations", c_int, [c_void_p, doubles, c_int]),
-        ("shapeop_setProblem", c_int, [c_void_p, c_char_p, POINTER(shapeop_solve_options)]),
-        ("shapeop_problemText", c_char_p, [c_char_p]),
-        ("shapeop_defaultRecipeOptions", c_int, [POINTER(shapeop_recipe_options)]),
-        (
-            "shapeop_recipe",
+shapeop_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_progress), c_void_p)
+
+# What each function returns, and what it takes.
+FUNCTIONS = {
+    "shapeop_version": (c_char_p, []),
+    "shapeop_abiVersion": (c_int, []),
+    "shapeop_lastError": (c_char_p, [c_void_p]),
+    "shapeop_errorText": (c_char_p, [c_int]),
+    "shapeop_create": (c_void_p, []),
+    "shapeop_delete": (None, [c_void_p]),
+    "shapeop_init": (c_int, [c_void_p]),
+    "shapeop_initDynamic": (c_int, [c_void_p, c_double, c_double, c_double]),
+    "shapeop_solve": (c_int, [c_void_p, c_uint]),
+    "shapeop_setTimeStep": (None, [c_void_p, c_double]),
+    "shapeop_setDamping": (None, [c_void_p, c_double]),
+    "shapeop_setThreadCount": (c_int, [c_void_p, c_int]),
+    "shapeop_setAcceleration": (c_int, [c_void_p, c_int, c_uint]),
+    "shapeop_setLinearSolver": (c_int, [c_void_p, c_int]),
+    "shapeop_setPoints": (None, [c_void_p, POINTER(c_double), c_int]),
+    "shapeop_getPoints": (None, [c_void_p, POINTER(c_double), c_int]),
+    "shapeop_pointCount": (c_int, [c_void_p]),
+    "shapeop_unconstrainedCount": (c_int, [c_void_p]),
+    "shapeop_addConstraint": (c_int, [c_void_p, c_char_p, POINTER(c_int), c_int, c_double]),
+    "shapeop_addConstraints": (
+        c_int,
+        [
+            c_void_p,
             c_char_p,
-            [c_char_p, doubles, c_int, ints, c_int, ints, c_int, POINTER(shapeop_recipe_options)],
-        ),
-        ("shapeop_recipeName", c_char_p, [c_int]),
-        ("shapeop_recipeCount", c_int, []),
-        (
-            "shapeop_measureFaces",
+            POINTER(c_int),
             c_int,
-            [c_char_p, doubles, c_int, ints, c_int, ints, c_int, doubles, c_int],
-        ),
-        ("shapeop_measureName", c_char_p, [c_int]),
-        ("shapeop_measureCount", c_int, []),
-    ]
-    for name, result, arguments in functions:
-        function = getattr(library, name, None)  # the library may be older than this list
-        if function is not None:
-            function.restype, function.argtypes = result, arguments
+            POINTER(c_int),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_uint,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_editConstraint": (c_int, [c_void_p, c_char_p, c_int, POINTER(c_double), c_int]),
+    "shapeop_editConstraints": (c_int, [c_void_p, c_char_p, POINTER(c_int), c_int, POINTER(c_double), c_int, c_int]),
+    "shapeop_setWeight": (c_int, [c_void_p, c_int, c_double]),
+    "shapeop_setWeights": (c_int, [c_void_p, POINTER(c_int), c_int, POINTER(c_double), c_int]),
+    "shapeop_removeConstraint": (c_int, [c_void_p, c_int]),
+    "shapeop_constraintCount": (c_int, [c_void_p]),
+    "shapeop_isConstraint": (c_int, [c_void_p, c_int]),
+    "shapeop_isDegenerate": (c_int, [c_void_p, c_int]),
+    "shapeop_addGravityForce": (c_int, [c_void_p, POINTER(c_double)]),
+    "shapeop_addVertexForce": (c_int, [c_void_p, POINTER(c_double), c_int]),
+    "shapeop_editVertexForce": (None, [c_void_p, c_int, POINTER(c_double), c_int]),
+    "shapeop_removeForce": (c_int, [c_void_p, c_int]),
+    "shapeop_forceCount": (c_int, [c_void_p]),
+    "shapeop_isForce": (c_int, [c_void_p, c_int]),
+    "shapeop_constraintTypeCount": (c_int, []),
+    "shapeop_constraintType": (c_int, [c_int, POINTER(shapeop_constraint_type)]),
+    "shapeop_constraintScalar": (c_int, [c_int, c_int, POINTER(shapeop_constraint_scalar)]),
+    "shapeop_constraintIndexName": (c_char_p, [c_int, c_int]),
+    "shapeop_defaultSolveOptions": (c_int, [POINTER(shapeop_solve_options)]),
+    "shapeop_solveUntil": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(shapeop_solve_options),
+            shapeop_progress_callback,
+            c_void_p,
+            POINTER(shapeop_solve_report),
+        ],
+    ),
+    "shapeop_energy": (c_int, [c_void_p, POINTER(c_double)]),
+    "shapeop_getViolations": (c_int, [c_void_p, POINTER(c_double), c_int]),
+    "shapeop_setProblem": (c_int, [c_void_p, c_char_p, POINTER(shapeop_solve_options)]),
+    "shapeop_problemText": (c_char_p, [c_char_p]),
+    "shapeop_defaultRecipeOptions": (c_int, [POINTER(shapeop_recipe_options)]),
+    "shapeop_recipe": (
+        c_char_p,
+        [
+            c_char_p,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(shapeop_recipe_options),
+        ],
+    ),
+    "shapeop_recipeCount": (c_int, []),
+    "shapeop_recipeName": (c_char_p, [c_int]),
+    "shapeop_measureFaces": (
+        c_int,
+        [
+            c_char_p,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_double),
+            c_int,
+        ],
+    ),
+    "shapeop_measureCount": (c_int, []),
+    "shapeop_measureName": (c_char_p, [c_int]),
+}
+
+
+def declare(library):
+    """Tells ctypes what the functions of a loaded library take and return."""
+    for name, (result, arguments) in FUNCTIONS.items():
+        function = getattr(library, name)
+        function.restype = result
+        function.argtypes = arguments
+    return library

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 from ._library import ArgumentError, ArgumentTypeError
 
 try:
-    import numpy
+    import numpy as numpy
 except ImportError:
     numpy = None  # type: ignore[assignment]
 
@@ -41,7 +41,7 @@ class Block(NamedTuple):
     """Numbers in the library's layout: the pointer keeps them alive."""
 
     pointer: Any
-    count: int
+    length: int
 
 
 class IndexLists(NamedTuple):
@@ -100,7 +100,7 @@ def name_bytes(value: object, name: str) -> bytes:
 
 def _sequence(values: object, name: str, expected: str) -> Any:
     """`values` as something with a length; iterators are not looked into twice, so they are refused."""
-    if isinstance(values, (str, bytes, bytearray, dict)) or not hasattr(values, "__len__"):
+    if isinstance(values, (str, bytes, bytearray, dict, set, frozenset)) or not hasattr(values, "__len__"):
         raise ArgumentTypeError(f"{name}: expected {expected}, found {found(values)}")
     return values
 
@@ -138,13 +138,13 @@ def points(values: PointsLike, name: str = "points") -> Block:
         if wrong:
             raise ArgumentError(f"{name}[{wrong[0]}]: expected 3 coordinates, found {found(wrong[1])}")
         block = _list_block(chain.from_iterable(rows), name, expected)
-    return Block(block.pointer, integer(block.count // 3, f"number of {name}"))
+    return Block(block.pointer, integer(block.length // 3, f"number of {name}"))
 
 
 def vector(values: Any, name: str) -> Block:
     """Three numbers."""
     block = numbers(values, name)
-    if block.count != 3:
+    if block.length != 3:
         raise ArgumentError(f"{name}: expected 3 numbers, found {found(values)}")
     return block
 
@@ -155,8 +155,9 @@ def numbers(values: Any, name: str) -> Block:
         if values.ndim > 1:
             raise ArgumentError(f"{name}: expected a number or a 1-D array, found {found(values)}")
         return _array_block(values, name)
-    if hasattr(values, "__len__") and not isinstance(values, (str, bytes)):
-        return _list_block(values, name, "a number or a list of numbers")
+    if hasattr(values, "__len__"):
+        expected = "a number or a list of numbers"
+        return _list_block(_sequence(values, name, expected), name, expected)
     return _list_block([real(values, name)], name, "a number")
 
 
@@ -241,4 +242,23 @@ def index_lists(values: Any, name: str) -> IndexLists:
             raise ArgumentTypeError(f"{name}: expected lists of point indices, found {found(values)}") from None
         return IndexLists(_int_block(chain.from_iterable(lists), name), counts, len(lists), False)
     indices = _int_block(lists, name)
-    return IndexLists(indices, _int_block([indices.count], name), 1, True)
+    return IndexLists(indices, _int_block([indices.length], name), 1, True)
+
+
+def doubles(values: Any) -> Doubles:
+    """Numbers that the library filled into a ctypes array, as they are handed out."""
+    if numpy is None:
+        return list(values)
+    # Without its type in words: the description that ctypes gives of empty arrays is wrong in Python 3.9.
+    return numpy.frombuffer(values).copy() if len(values) > 0 else numpy.empty(0)
+
+
+def member(kind: Any, value: Any, name: str) -> int:
+    """The number of a member of an enum that is given as such or by its name."""
+    if isinstance(value, str):
+        for one in kind:
+            if one.name.lower() == value.lower().replace("-", "_"):
+                return int(one)
+        names = ", ".join(one.name.lower().replace("_", "-") for one in kind)
+        raise ArgumentError(f"{name}: expected one of {names}, found {value!r}")
+    return integer(value, name)

@@ -138,7 +138,7 @@ def load(path: Union[str, Path]) -> Any:
         raise LoadError(f"expected the shapeop library in {path}, found one without shapeop_abiVersion") from error
     if version != _abi.ABI_VERSION:
         raise LoadError(f"expected ABI version {_abi.ABI_VERSION}, found {version} in {path}")
-    _abi.declare(library)
+    _abi.declare(library)  # type: ignore[no-untyped-call]
     return library
 
 

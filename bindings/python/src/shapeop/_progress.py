@@ -17,10 +17,10 @@ ProgressFunction = Callable[[Progress], object]
 class Watch:
     """Watches over one solve.
 
-    Use it as a context manager around the call, pass ``callback`` to the library, and what went wrong in the meantime is
-    raised at the end: an exception of the progress function, or Ctrl-C. Python would raise KeyboardInterrupt on entry
-    to the callback, outside any ``try``, where ctypes prints and forgets it; so Ctrl-C is noted by a handler of our own
-    as long as the library runs, and handed to the handler that was there before.
+    It is a context manager around the call, which gets its ``callback``. At the end it raises what went wrong in the
+    meantime: an exception of the progress function, or Ctrl-C. Python would raise KeyboardInterrupt on entry to the
+    callback, outside any ``try``, where ctypes prints and forgets it; so as long as the library runs a handler of our
+    own notes Ctrl-C, and at the end hands it to the handler that was there before.
     """
 
     def __init__(self, progress: Optional[ProgressFunction]) -> None:

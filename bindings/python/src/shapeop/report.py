@@ -111,7 +111,8 @@ class Report:
 
 def report_of(struct: _abi.shapeop_solve_report, message: str) -> Report:
     """The library's report as a :class:`Report`."""
-    values = {field.name: getattr(struct, field.name) for field in dataclasses.fields(Report) if field.name != "message"}
+    names = [field.name for field in dataclasses.fields(Report) if field.name != "message"]
+    values = {name: getattr(struct, name) for name in names}
     values["outcome"] = Outcome(values["outcome"])
     values["linear_solver"] = LinearSolver(values["linear_solver"])
     is_unbounded = values["outcome"] is Outcome.UNBOUNDED

@@ -10,7 +10,17 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Optional, Union, overload
 
 from . import _abi, _arrays
-from ._library import ArgumentError, ArgumentTypeError, ClosedError, ErrorCode, check, check_message, lib, text
+from ._library import (
+    ArgumentError,
+    ArgumentTypeError,
+    ClosedError,
+    ErrorCode,
+    UnknownIdError,
+    check,
+    check_message,
+    lib,
+    text,
+)
 from ._progress import ProgressFunction, Watch
 from .report import Acceleration, LinearSolver, Report, report_of
 
@@ -54,6 +64,18 @@ class Solver:
         if block is not None:
             self._set_points(block)
 
+    def _set_problem(self, json: bytes, types: Sequence[str]) -> None:
+        """Makes this the solver of a problem, whose constraints have the `types`."""
+        check(lib.shapeop_setProblem(self._handle, json, ctypes.byref(self._options)), self._handle)
+        self._run_starts, self._run_types = [], []
+        for first, type_name in enumerate(types):
+            self._note_type(first, type_name)
+
+    def _note_type(self, first: int, type_name: str) -> None:
+        if not self._run_types or self._run_types[-1] != type_name:
+            self._run_starts.append(first)
+            self._run_types.append(type_name)
+
     # Ownership.
 
     @property
@@ -95,7 +117,7 @@ class Solver:
     # Points.
 
     def _set_points(self, block: _arrays.Block) -> None:
-        lib.shapeop_setPoints(self._handle, block.pointer, block.count)
+        lib.shapeop_setPoints(self._handle, block.pointer, block.length)
         check_message(self._handle)
 
     @property
@@ -133,7 +155,7 @@ class Solver:
             flat = (ctypes.c_double * (3 * count))()
             self._fill_points(flat, count)
             rows = iter(flat)
-            return list(map(list, zip(rows, rows, rows)))  # type: ignore[return-value]
+            return list(map(list, zip(rows, rows, rows)))
         if out is None:
             out = _arrays.numpy.empty((count, 3))
         self._fill_points(out.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), count)
@@ -174,8 +196,8 @@ class Solver:
         ``indices``: one list (or 1-D integer array) of point indices adds one constraint and returns its id; a list of
         such lists, of different lengths or not, or an (n, k) integer array adds n and returns their ids as a ``range``.
         ``weight``: a number for all, or one per constraint; at least 0.
-        ``scalars``: ``None`` for the defaults of the type; a flat list for all; or one such list per constraint. A shape
-        may be nested, as a list of ``[x, y, z]``.
+        ``scalars``: ``None`` for the defaults of the type; a flat list for all; or one such list per constraint. A
+        shape may be nested, as a list of ``[x, y, z]``.
 
         Ids count up from 0 and are never reused. Raises :class:`InvalidValueError` or :class:`IndexRangeError` for what
         the library refuses, :class:`ArgumentError` or :class:`ArgumentTypeError` for wrong shapes and types.
@@ -186,8 +208,8 @@ class Solver:
         sets, set_count = _arrays.scalar_sets(scalars, "scalars", None if lists.is_one else lists.list_count)
         if lists.list_count == 0:
             return range(0)
-        if weights.count not in (1, lists.list_count):
-            found = f"found {weights.count} numbers"
+        if weights.length not in (1, lists.list_count):
+            found = f"found {weights.length} numbers"
             raise ArgumentError(f"weight: expected a number, or {lists.list_count}, one per constraint; {found}")
         ids = (ctypes.c_int * lists.list_count)()
         # One count stands for all.
@@ -196,9 +218,7 @@ class Solver:
         )
         check(code, self._handle)
         first = ids[0]
-        if not self._run_types or self._run_types[-1] != type_name:
-            self._run_starts.append(first)
-            self._run_types.append(type_name)
+        self._note_type(first, type_name)
         return first if lists.is_one else range(first, first + lists.list_count)
 
     def edit(self, type_name: Optional[str], ids: Ids, scalars: ScalarsLike) -> None:
@@ -215,18 +235,22 @@ class Solver:
             check(lib.shapeop_editConstraint(self._handle, name, one, *block), self._handle)
             return
         many = _arrays.ids(ids, "ids")
-        block, set_count = _arrays.scalar_sets(scalars, "scalars", many.count)
-        if many.count > 0:
+        block, set_count = _arrays.scalar_sets(scalars, "scalars", many.length)
+        if many.length > 0:
             name = _arrays.name_bytes(type_name or self._type_of(ids), "type_name")
             check(lib.shapeop_editConstraints(self._handle, name, *many, *block, set_count), self._handle)
 
     def _type_of(self, ids: Any) -> str:
         """The one type of all constraints in `ids`; an unknown id is the library's to refuse, under any type."""
-        runs = {bisect_right(self._run_starts, i) - 1 for i in (min(ids), max(ids), *ids)}
-        names = sorted({self._run_types[max(run, 0)] for run in runs} if self._run_types else ())
+        if not self._run_types:
+            raise UnknownIdError(
+                f"ids: expected constraint ids, found {_arrays.found(ids)}, but no constraint was added"
+            )
+        runs = {bisect_right(self._run_starts, i) - 1 for i in ids}
+        names = sorted({self._run_types[max(run, 0)] for run in runs})
         if len(names) > 1:
             raise ArgumentError(f"ids: expected constraints of one type, found {' and '.join(names)}")
-        return names[0] if names else ""
+        return names[0]
 
     def set_weights(self, ids: Ids, weight: Numbers) -> None:
         """Sets the weights of constraints, all or none: an id or many; a number for all or one per id; at least 0."""
@@ -235,9 +259,14 @@ class Solver:
         check(lib.shapeop_setWeights(self._handle, *many, *weights), self._handle)
 
     def remove(self, ids: Ids) -> None:
-        """Removes constraints. Their ids are never given out again; arrays with one entry per id keep their place."""
+        """Removes constraints, all or none: an id or many.
+
+        The ids are never given out again; arrays with one entry per id keep their place.
+        """
         many = _arrays.ids(ids if hasattr(ids, "__len__") else [ids], "ids")
-        for one in dict.fromkeys(many.pointer[: many.count]):
+        once = list(dict.fromkeys(many.pointer[: many.length]))
+        # One that does not exist goes first: it is refused before any other is removed.
+        for one in sorted(once, key=lambda id: lib.shapeop_isConstraint(self._handle, id) == 1):
             check(lib.shapeop_removeConstraint(self._handle, one), self._handle)
 
     @property
@@ -267,7 +296,7 @@ class Solver:
         count = self.constraint_count
         flat = (ctypes.c_double * count)()
         check(lib.shapeop_getViolations(self._handle, flat, count), self._handle)
-        return list(flat) if _arrays.numpy is None else _arrays.numpy.array(flat)  # type: ignore[return-value]
+        return _arrays.doubles(flat)
 
     # Forces.
 
@@ -337,8 +366,8 @@ class Solver:
         """Iterates, accelerated, until it converges or may not go on; in dynamic mode within one time step.
 
         ``max_iterations``: 1000 by default. ``tolerance``: stop when the largest move of a point in an iteration,
-        relative to the bounding-box diagonal, is below it; 1e-6 by default, 0 for never. ``time_budget_seconds``: 0, the
-        default, for none. A solver made from a :class:`Problem` has the problem's settings as defaults.
+        relative to the bounding-box diagonal, is below it; 1e-6 by default, 0 for never. ``time_budget_seconds``: 0,
+        the default, for none. A solver made from a :class:`Problem` has the problem's settings as defaults.
 
         ``progress``: called with a :class:`Progress` after every iteration. If it returns ``False``, the solve ends and
         keeps what was reached; ``None`` or ``True`` go on. An exception in it ends the solve and is raised after; so
@@ -385,13 +414,13 @@ class Solver:
 
         ``memory``: the number of iterations that are remembered for it, at most 64; 0: the method's default.
         """
-        number = _member(Acceleration, kind, "kind")
+        number = _arrays.member(Acceleration, kind, "kind")
         most = _arrays.integer(memory, "memory", 0, _arrays.UINT_MAX)
         check(lib.shapeop_setAcceleration(self._handle, number, most), self._handle)
 
     def set_linear_solver(self, linear_solver: Union[LinearSolver, str]) -> None:
         """Sets how linear systems are solved: a :class:`LinearSolver` or its name in lower case."""
-        number = _member(LinearSolver, linear_solver, "linear_solver")
+        number = _arrays.member(LinearSolver, linear_solver, "linear_solver")
         check(lib.shapeop_setLinearSolver(self._handle, number), self._handle)
 
     def _count(self, answer: int) -> int:
@@ -399,14 +428,3 @@ class Solver:
         if answer < 0:
             check_message(self._handle)
         return answer
-
-
-def _member(kind: Any, value: Any, name: str) -> int:
-    """The number of a member of an enum that is given as such or by its name."""
-    if isinstance(value, str):
-        for member in kind:
-            if member.name.lower() == value.lower().replace("-", "_"):
-                return int(member)
-        names = ", ".join(member.name.lower() for member in kind)
-        raise ArgumentError(f"{name}: expected one of {names}, found {value!r}")
-    return _arrays.integer(value, name)
