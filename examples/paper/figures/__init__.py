@@ -1,6 +1,7 @@
 """One module for each figure of the paper. Each says:
 
-- `NUMBER`, `TITLE`, `CLAIM` (what the paper shows or says, in our words)
+- `NUMBER`, `TITLE`, `CLAIM` (what the paper shows or says, in our words), `NOTES` (what was chosen here, and why
+  numbers are what they are)
 - `build()`: the spec, as README.md states it, and its meshes by path
 - `measures(solved)`: what was measured, as `claims.Measure`s
 - `picture(solved, path)`: draws it

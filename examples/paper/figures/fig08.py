@@ -12,6 +12,11 @@ from draw import GOOD_TO_BAD, Camera, Panel, colors_of, page
 NUMBER = 8
 TITLE = "A shell of regular triangles and squares"
 CLAIM = "While four anchors bend the mesh, every triangle becomes equilateral and every square a square again."
+NOTES = """\
+The snub square tiling: 50 squares and 92 triangles. Similar shapes may be of any size, but all faces share edges, so
+they are of one size in the end, a little smaller than in the input. If the anchors only came closer, the mesh would
+shrink flat; as two of them go up, it has to bend.
+"""
 
 COUNT = 5
 #: Where the four corners go: closer together, and two of them up; in shares of the mesh's width.
@@ -33,10 +38,24 @@ def build():
         "name": "shell",
         "mesh": "meshes/fig08.obj",
         "constraints": [
-            {"name": name, "type": "Similarity", "indices": [f for f in faces if len(f) == sides], "weights": [1], "scalars": [shape]}
+            {
+                "name": name,
+                "type": "Similarity",
+                "indices": [f for f in faces if len(f) == sides],
+                "weights": [1],
+                "scalars": [shape],
+            }
             for sides, (name, shape) in shapes.items()
         ]
-        + [{"name": "anchors", "type": "Closeness", "indices": [[a] for a in anchors], "weights": [1000], "scalars": places.tolist()}],
+        + [
+            {
+                "name": "anchors",
+                "type": "Closeness",
+                "indices": [[a] for a in anchors],
+                "weights": [1000],
+                "scalars": places.tolist(),
+            }
+        ],
         "settings": {"mode": "static", "iterations": 1},
         "stages": [{"name": name, "solves": solves} for name, solves in STAGES.items()],
     }
@@ -45,7 +64,9 @@ def build():
 
 def angle_errors(shell, points):
     """For each face: its worst angle's distance to 60 degrees in triangles, to 90 in squares."""
-    return np.array([np.abs(measure.face_angles(points, face) - (60 if len(face) == 3 else 90)).max() for face in shell.faces])
+    return np.array(
+        [np.abs(measure.face_angles(points, face) - (60 if len(face) == 3 else 90)).max() for face in shell.faces]
+    )
 
 
 def side_errors(shell, points):
@@ -65,9 +86,24 @@ def measures(solved):
         is_last = name == "500 iterations"
         points = shell[name]
         found += [
-            Measure("worst angle off 60 or 90 degrees, " + name, angle_errors(shell, points).max(), "degrees", most=1 if is_last else None),
-            Measure("worst longest over shortest side of a face, minus 1, " + name, side_errors(shell, points).max(), "%", most=2 if is_last else None),
-            Measure("worst planarity of a square, " + name, measure.planarity(points, squares).max(), "%", most=0.5 if is_last else None),
+            Measure(
+                "worst angle off 60 or 90 degrees, " + name,
+                angle_errors(shell, points).max(),
+                "degrees",
+                most=1 if is_last else None,
+            ),
+            Measure(
+                "worst longest over shortest side of a face, minus 1, " + name,
+                side_errors(shell, points).max(),
+                "%",
+                most=2 if is_last else None,
+            ),
+            Measure(
+                "worst planarity of a square, " + name,
+                measure.planarity(points, squares).max(),
+                "%",
+                most=0.5 if is_last else None,
+            ),
         ]
     height = np.ptp(points[:, 2]) / np.ptp(shell.points[:, 0])
     return found + [Measure("height over the width of the input, 500 iterations", height, least=0.25)]
@@ -76,7 +112,7 @@ def measures(solved):
 def picture(solved, path):
     shell = solved["shell"]
     anchors = [tree[0] for tree in shell.trees["anchors"]]
-    moves = list(zip(shell.points[anchors], shell.model["constraints"][2]["scalars"]))
+    moves = list(zip(shell.points[anchors], shell.model["constraints"][2]["scalars"], strict=True))
     panels = []
     for title, points in [("input, and where the anchors go", shell.points)] + [(name, shell[name]) for name in STAGES]:
         is_input = points is shell.points
@@ -84,7 +120,15 @@ def picture(solved, path):
         if not is_input:
             title += "\nangles up to %.1f° off, sides up to %.1f %%" % (errors.max(), side_errors(shell, points).max())
         panels.append(
-            Panel(points, shell.faces, title, face_colors=colors_of(errors, GOOD_TO_BAD, 0, LIMIT), marks=points[anchors], arrows=moves if is_input else [], floor=-0.4)
+            Panel(
+                points,
+                shell.faces,
+                title,
+                face_colors=colors_of(errors, GOOD_TO_BAD, 0, LIMIT),
+                marks=points[anchors],
+                arrows=moves if is_input else [],
+                floor=-0.4,
+            )
         )
     legend = (GOOD_TO_BAD, 0, LIMIT, "worst angle of a face, in degrees off 60 (triangles) or 90 (squares); clipped")
     page(path, [panels[:2], panels[2:]], Camera(-118, 30), [legend], width=9.0)
