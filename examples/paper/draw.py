@@ -23,7 +23,7 @@ ANCHOR = "#d1332e"
 GOOD_TO_BAD = LinearSegmentedColormap.from_list("good to bad", ["#1b7f4b", "#8cc665", "#f8ecae", "#f0a05a", "#c22b2b"])
 #: Compression red, tension blue.
 STRAIN = LinearSegmentedColormap.from_list("strain", ["#b2182b", "#ef8a62", "#c9c9c9", "#67a9cf", "#2166ac"])
-NEAR_TO_FAR = LinearSegmentedColormap.from_list("near to far", ["#2b6cb0", "#9dbfdd", "#e6dfd8", "#e58a6d", "#b8212f"])
+NEAR_TO_FAR = LinearSegmentedColormap.from_list("near to far", ["#2b6cb0", "#7ea6cf", "#a79fae", "#d9785f", "#b8212f"])
 
 DPI = 130
 

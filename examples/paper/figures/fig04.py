@@ -109,7 +109,8 @@ def picture(solved, path):
         ("100 steps (1000 iterations) after they are back", cloth["let go"]),
     ):
         strains = 100 * measure.strains(points, cloth.points, edges)
-        title += "\nstrain %+.1f to %+.1f %%" % (min(strains.min(), 0), max(strains.max(), 0))
+        if points is not cloth.points:
+            title += "\nstrain %+.1f to %+.1f %%" % (min(strains.min(), 0), max(strains.max(), 0))
         marks = points[anchors]
         wires = colors_of(strains, STRAIN, -LIMIT, LIMIT)
         rows[0].append(
