@@ -13,7 +13,7 @@ NUMBER = 8
 TITLE = "A shell of regular triangles and squares"
 CLAIM = "While four anchors bend the mesh, every triangle becomes equilateral and every square a square again."
 NOTES = """\
-The snub square tiling: 50 squares and 92 triangles. Similar shapes may be of any size, but all faces share edges, so
+The snub square tiling: 50 squares and 97 triangles. Similar shapes may be of any size, but all faces share edges, so
 they are of one size in the end, a little smaller than in the input. If the anchors only came closer, the mesh would
 shrink flat; as two of them go up, it has to bend.
 """

@@ -15,8 +15,9 @@ CLAIM = "At every resolution angles come into 80 to 110 degrees, boundaries onto
 NOTES = """\
 A canopy about a middle, lifted, twisted and shaken at random: the same waves at three resolutions. Angles ask for 81
 to 109 degrees, as iterations only approach the end of a range. Areas and angles contradict each other in shaken
-faces: with these weights the angles are met and areas give by some percent. The last model says what it costs to
-weigh the areas more: they change less, and some angles stay outside.
+faces: with these weights the angles are met, and areas give, by some percent on the whole and up to a quarter in
+single faces. So areas are kept only as far as the angles let them. The last model says what it costs to weigh the areas
+more: they change less, and some angles stay outside.
 """
 
 SEED = 9

@@ -195,3 +195,10 @@ def test_a_bound_is_met_by_its_own_value_and_not_beyond():
     assert not Measure("", 1.001, most=1).is_met
     assert not Measure("", 0.999, least=1).is_met
     assert not Measure("", float("nan"), most=1).is_met
+
+
+def test_notes_count_the_faces_right():
+    counts = {figure: [len(face) for face in next(iter(solved(figure).values())).faces] for figure in (4, 8, 10)}
+    assert "%d triangles" % len(counts[4]) in ALL[4].NOTES
+    assert "%d squares and %d triangles" % (counts[8].count(4), counts[8].count(3)) in ALL[8].NOTES
+    assert "%d quads" % len(counts[10]) in ALL[10].NOTES
