@@ -8,10 +8,39 @@ use crate::suites::{Places, Suite};
 use crate::{dist, setup, shell};
 
 /// What the Python tests install, in `pip install`'s words.
-const REQUIREMENTS: [&str; 3] = ["--requirement", "bindings/python/requirements-test.txt", "dotnetcore2==3.1.23"];
+const REQUIREMENTS: [&str; 5] = [
+    "--requirement",
+    "bindings/python/requirements-test.txt",
+    "--requirement",
+    "examples/paper/requirements.txt",
+    "dotnetcore2==3.1.23",
+];
 
 /// The tests of each binding beside the three problems.
-pub const SUITES: [Suite; 5] = [
+pub const SUITES: [Suite; 8] = [
+    Suite {
+        name: "a CMake project against a moved installation",
+        environment: &[],
+        steps: &[
+            &["cmake", "-E", "copy_directory", "{dist}", "{work}/moved"],
+            &["cmake", "-S", "{source}/tests/cpp", "-B", "{work}/build", "-DSHAPEOP_PREFIX={work}/moved"],
+            &["cmake", "--build", "{work}/build"],
+            &["ctest", "--test-dir", "{work}/build", "--output-on-failure"],
+        ],
+    },
+    Suite {
+        name: "cc with pkg-config against a moved installation",
+        environment: &[],
+        steps: &[
+            &["cmake", "-E", "copy_directory", "{dist}", "{work}/moved"],
+            &["cmake", "-DSHAPEOP_PREFIX={work}/moved", "-DWORK={work}", "-P", "{source}/tests/cpp/pkg_config.cmake"],
+        ],
+    },
+    Suite {
+        name: "the eight examples of the ShapeOp paper",
+        environment: &[],
+        steps: &[&["{python}", "-m", "pytest", "-q", "-p", "no:cacheprovider", "{source}/examples/paper"]],
+    },
     Suite {
         name: "tests of the Python package",
         environment: &[],

@@ -28,9 +28,9 @@ struct Arguments {
 enum Command {
     /// Time the six problems beside compas-shapeop; write docs/benchmarks.md. CI=true: fail if compas-shapeop is missing.
     Bench(bench::Options),
-    /// Build the library and lay out headers and libraries for C hosts.
+    /// Build the library and lay out an installation for C and C++ hosts, CMake and pkg-config.
     Dist {
-        /// The folder to fill: lib/, include/, compat/.
+        /// The folder to fill: lib/, include/, share/, and compat/ for hosts of libShapeOp.
         folder: PathBuf,
         /// The Cargo profile to build with.
         #[arg(long, default_value = "release")]
