@@ -55,28 +55,28 @@ void wrong_arguments_are_named_and_change_nothing() {
 
     refused(SO_INVALID_ARGUMENT_LENGTH, {"points", "7"}, "7 numbers",
             [&] { solver.set_points({1, 2, 3, 4, 5, 6, 7}); });
-    refused(std::nullopt, {"point"}, "fewer points than are used", [&] { solver.set_points({0, 0, 0}); });
+    refused(SO_INVALID_ARGUMENT_LENGTH, {"point"}, "fewer points than are used", [&] { solver.set_points({0, 0, 0}); });
     std::vector<double> bad = sheet.points;
     bad[4] = nan;
-    refused(std::nullopt, {"points", "NaN"}, "a point that is none", [&] { solver.set_points(bad); });
+    refused(SO_INVALID_VALUE, {"points", "NaN"}, "a point that is none", [&] { solver.set_points(bad); });
     std::vector<double> too_short(3, 7.0);
-    refused(std::nullopt, {"64"}, "room for one", [&] { solver.copy_points(too_short); });
+    refused(SO_INVALID_ARGUMENT_LENGTH, {"64"}, "room for one", [&] { solver.copy_points(too_short); });
     check(too_short == std::vector<double>(3, 7.0), "nothing was written");
     refused(SO_INVALID_ARGUMENT_LENGTH, {"force", "2"}, "two components", [&] { solver.add_gravity_force({0, 1}); });
-    refused(std::nullopt, {"64"}, "force on no point", [&] { solver.add_vertex_force({0, 0, 1}, 64); });
-    refused(std::nullopt, {"force"}, "edit of no force", [&] { solver.edit_vertex_force(3, {0, 0, 1}, 0); });
+    refused(SO_INDEX_OUT_OF_RANGE, {"64"}, "force on no point", [&] { solver.add_vertex_force({0, 0, 1}, 64); });
+    refused(SO_UNMATCHING_FORCE_ID, {"force"}, "edit of no force", [&] { solver.edit_vertex_force(3, {0, 0, 1}, 0); });
     check(solver.force_count() == 0 && solver.points() == sheet.points, "as it was");
 
-    refused(std::nullopt, {"mass"}, "mass", [&] { solver.init_dynamic(0, 1, 1); });
-    refused(std::nullopt, {"timestep"}, "time step", [&] { solver.set_time_step(-1); });
-    refused(std::nullopt, {"damping"}, "damping", [&] { solver.set_damping(nan); });
+    refused(SO_INVALID_VALUE, {"mass"}, "mass", [&] { solver.init_dynamic(0, 1, 1); });
+    refused(SO_INVALID_VALUE, {"timestep"}, "time step", [&] { solver.set_time_step(-1); });
+    refused(SO_INVALID_VALUE, {"damping"}, "damping", [&] { solver.set_damping(nan); });
     refused(SO_INVALID_VALUE, {"5000"}, "threads", [&] { solver.set_thread_count(5000); });
     refused(SO_INVALID_VALUE, {"memory"}, "memory", [&] { solver.set_acceleration(SO_ACCELERATION_ANDERSON, 65); });
     shapeop::SolveOptions options;
     options.tolerance = -1;
     refused(SO_INVALID_VALUE, {"tolerance"}, "tolerance", [&] { solver.solve_until(options); });
     Solver fresh;
-    refused(std::nullopt, {"init"}, "solve before init", [&] { fresh.solve(1); });
+    refused(SO_NOT_INITIALISED, {"init"}, "solve before init", [&] { fresh.solve(1); });
     refused(SO_NOT_INITIALISED, {"init"}, "solve_until before init", [&] { fresh.solve_until(); });
 }
 
@@ -97,9 +97,9 @@ void a_solver_in_use_by_another_thread_refuses() {
     }
     refused(SO_BUSY, {"busy"}, "an edit meanwhile", [&] { sheet.solver.set_weight(0, 2); });
     refused(SO_BUSY, {"busy"}, "reading meanwhile", [&] { sheet.solver.energy(); });
-    refused(std::nullopt, {"busy"}, "solving meanwhile", [&] { sheet.solver.solve(1); });
-    refused(std::nullopt, {"busy"}, "points meanwhile", [&] { sheet.solver.set_points(sheet.points); });
-    refused(std::nullopt, {"busy"}, "counting meanwhile", [&] { sheet.solver.constraint_count(); });
+    refused(SO_BUSY, {"busy"}, "solving meanwhile", [&] { sheet.solver.solve(1); });
+    refused(SO_BUSY, {"busy"}, "points meanwhile", [&] { sheet.solver.set_points(sheet.points); });
+    refused(SO_BUSY, {"busy"}, "counting meanwhile", [&] { sheet.solver.constraint_count(); });
     is_done = true;
     other.join();
     sheet.solver.set_weight(0, 2);
@@ -112,11 +112,11 @@ void a_solver_that_was_moved_from_refuses() {
     check(moved.points() == std::vector<double>({1, 2, 3}), "what was moved");
     check(solver.handle() == nullptr, "nothing is left");
     const std::vector<std::string> words{"handle"};
-    refused(std::nullopt, words, "set_points", [&] { solver.set_points({0, 0, 0}); });
-    refused(std::nullopt, words, "points", [&] { solver.points(); });
-    refused(std::nullopt, words, "init", [&] { solver.init(); });
-    refused(std::nullopt, words, "solve", [&] { solver.solve(1); });
-    refused(std::nullopt, words, "add_gravity_force", [&] { solver.add_gravity_force({0, 0, 1}); });
+    refused(SO_INVALID_HANDLE, words, "set_points", [&] { solver.set_points({0, 0, 0}); });
+    refused(SO_INVALID_HANDLE, words, "points", [&] { solver.points(); });
+    refused(SO_INVALID_HANDLE, words, "init", [&] { solver.init(); });
+    refused(SO_INVALID_HANDLE, words, "solve", [&] { solver.solve(1); });
+    refused(SO_INVALID_HANDLE, words, "add_gravity_force", [&] { solver.add_gravity_force({0, 0, 1}); });
     refused(SO_INVALID_HANDLE, words, "add_constraint", [&] { solver.add_constraint("Closeness", {0}); });
     refused(SO_INVALID_HANDLE, words, "solve_until", [&] { solver.solve_until(); });
     refused(SO_INVALID_HANDLE, words, "energy", [&] { solver.energy(); });
@@ -149,7 +149,7 @@ void an_exception_in_the_callback_comes_out_of_solve_until() {
     } catch (const std::runtime_error &error) {
         check(std::string(error.what()) == "enough", "a second exception");
     }
-    refused(std::nullopt, {"busy"}, "moving points from inside the callback", [&] {
+    refused(SO_BUSY, {"busy"}, "moving points from inside the callback", [&] {
         sheet.solver.solve_until(sheet.options,
                                  [&](const shapeop::Progress &) { sheet.solver.set_points(sheet.points); });
     });
@@ -165,9 +165,9 @@ void a_problem_that_cannot_be_read_is_refused_with_its_place() {
         "constraints": [{"type": "Closeness", "indices": [0]}, {"type": "Closeness", "indices": [3]}]})";
     refused(SO_INDEX_OUT_OF_RANGE, {"constraints[1]"}, "index in JSON", [&] { tug.solver.set_problem(json); });
     near(tug.rest(), 3, "the solver is as before");
-    refused(std::nullopt, {"constraints[1]"}, "the same as text", [&] { shapeop::problem_text(json); });
+    refused(SO_INDEX_OUT_OF_RANGE, {"constraints[1]"}, "the same as text", [&] { shapeop::problem_text(json); });
     check(!shapeop::recipe_names().empty(), "recipes");
-    refused(std::nullopt, {"\"flatten\"", shapeop::recipe_names().front()}, "recipe",
+    refused(SO_INVALID_VALUE, {"\"flatten\"", shapeop::recipe_names().front()}, "recipe",
             [&] { shapeop::recipe("flatten", {0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}, {3}); });
 }
 

@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,16 +31,15 @@ inline void near(double found, double expected, const std::string &what, double 
           what + ": expected " + std::to_string(expected) + ", found " + std::to_string(found));
 }
 
-// The call throws an Error of this code (where the C function gives one) with these words in its text.
+// The call throws an Error of this code with these words in its text.
 template <class Call>
-void refused(std::optional<shapeop_err> code, const std::vector<std::string> &words, const std::string &what,
-             Call call) {
+void refused(shapeop_err code, const std::vector<std::string> &words, const std::string &what, Call call) {
     try {
         call();
         check(false, what + " was accepted");
     } catch (const shapeop::Error &error) {
         const std::string text = error.what();
-        check(error.code() == code, what + ": code " + (error.code() ? std::to_string(*error.code()) : "none"));
+        check(error.code() == code, what + ": code " + std::to_string(error.code()));
         check(!text.empty(), what + ": no message");
         for (const std::string &word : words) {
             check(text.find(word) != std::string::npos, what + ": \"" + word + "\" is not in \"" + text + "\"");

@@ -4,7 +4,6 @@
 
 #include "shapeop.h"
 
-#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -13,33 +12,32 @@ namespace shapeop {
 /// A refused call. It has changed nothing.
 class Error : public std::runtime_error {
 public:
-    Error(std::optional<shapeop_err> code, const std::string &message) : std::runtime_error(message), code_(code) {}
+    Error(shapeop_err code, const std::string &message) : std::runtime_error(message), code_(code) {}
 
-    /// The kind of refusal; empty where the C function says no more than that it refused: points, forces, init, solve,
-    /// counts. The text says it in every case.
-    std::optional<shapeop_err> code() const noexcept { return code_; }
+    /// The kind of refusal.
+    shapeop_err code() const noexcept { return code_; }
 
 private:
-    std::optional<shapeop_err> code_;
+    shapeop_err code_;
 };
 
 namespace detail {
 
 /// Throws what the library said of the last call on `op`, which was refused.
-[[noreturn]] inline void refuse(ShapeOpSolver *op, std::optional<shapeop_err> code = std::nullopt) {
-    throw Error(code, shapeop_lastError(op));
+[[noreturn]] inline void refuse(ShapeOpSolver *op) {
+    throw Error(shapeop_lastErrorCode(op), shapeop_lastError(op));
 }
 
 /// Throws if the call that answered with `code` was refused.
 inline void check(shapeop_err code, ShapeOpSolver *op) {
     if (code != SO_SUCCESS) {
-        refuse(op, code);
+        refuse(op);
     }
 }
 
 /// Throws if the last call on `op`, of a function without a result, was refused.
 inline void check_void(ShapeOpSolver *op) {
-    if (*shapeop_lastError(op) != '\0') {
+    if (shapeop_lastErrorCode(op) != SO_SUCCESS) {
         refuse(op);
     }
 }

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <exception>
 #include <memory>
-#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -69,7 +68,7 @@ public:
             detail::refuse(nullptr);
         }
         if (shapeop_abiVersion() != SHAPEOP_ABI_VERSION) {
-            throw Error(std::nullopt, "the library has ABI version " + std::to_string(shapeop_abiVersion()) +
+            throw Error(SO_INVALID_INPUT, "the library has ABI version " + std::to_string(shapeop_abiVersion()) +
                                           ", this program was compiled for " + std::to_string(SHAPEOP_ABI_VERSION));
         }
     }

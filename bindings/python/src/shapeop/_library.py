@@ -37,7 +37,8 @@ class ErrorCode(IntEnum):
 class Error(Exception):
     """The library refused a call, and changed nothing.
 
-    ``code`` is an :class:`ErrorCode`, or ``None`` where the function of the C ABI that was called reports no code.
+    ``code`` is an :class:`ErrorCode`, ``None`` if the library could not be loaded, a plain number if it is
+    newer than this package and has one more.
     """
 
     def __init__(self, message: str, code: Optional[int] = None) -> None:
@@ -166,7 +167,4 @@ def check(code: int, handle: Optional[int] = None) -> None:
 
 def check_message(handle: Optional[int] = None) -> None:
     """Raises what the library refused, for functions that answer without an error code."""
-    message = text(lib.shapeop_lastError(handle))
-    if message:
-        # "op" is the solver itself: it exists as long as its owner has not closed it, so another call is using it.
-        raise refusal(ErrorCode.BUSY, message) if message.startswith("op: ") else Error(message)
+    check(lib.shapeop_lastErrorCode(handle), handle)
