@@ -163,6 +163,11 @@ fn write(to: &Path, text: &str) -> Result<()> {
     fs::write(to, text).with_context(|| format!("{} could not be written", to.display()))
 }
 
+/// The library in a folder that [`run`] filled.
+pub fn library(folder: &Path) -> PathBuf {
+    folder.join("lib").join(LIBRARY)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -183,9 +188,4 @@ mod tests {
         assert_eq!(compatible_prefix("1.2.3"), "1");
         assert_eq!(compatible_prefix("10.2.3"), "10");
     }
-}
-
-/// The library in a folder that [`run`] filled.
-pub fn library(folder: &Path) -> PathBuf {
-    folder.join("lib").join(LIBRARY)
 }
