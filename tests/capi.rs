@@ -514,10 +514,10 @@ fn setters_without_a_result_leave_a_message_and_its_code() {
         for value in [-1.0, f64::NAN, f64::INFINITY] {
             set(abi.0, value);
             assert!(abi.message().starts_with(name), "{}", abi.message());
-            assert_eq!(shapeop_lastErrorCode(abi.0), shapeop_err::SO_INVALID_VALUE);
+            assert_eq!(shapeop_lastErrorCode(abi.0), SO_INVALID_VALUE);
         }
         set(abi.0, 0.25);
-        assert_eq!((abi.message().as_str(), shapeop_lastErrorCode(abi.0)), ("", shapeop_err::SO_SUCCESS));
+        assert_eq!((abi.message().as_str(), shapeop_lastErrorCode(abi.0)), ("", SO_SUCCESS));
     }
 }
 
