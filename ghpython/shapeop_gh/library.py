@@ -57,13 +57,14 @@ def declarations():
 def declare(library, arrays_as_addresses):
     """Sets argument and result types; `arrays_as_addresses` declares pointers to numbers as c_void_p, as IronPython
     needs them."""
-    declarations().declare(library)
+    abi = declarations()
+    abi.declare(library)
     if not arrays_as_addresses:
         return
     pointers = (ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int))
-    for name, function in list(vars(library).items()):
-        if name.startswith("shapeop_") and function.argtypes:
-            function.argtypes = [ctypes.c_void_p if a in pointers else a for a in function.argtypes]
+    for name in abi.FUNCTIONS:
+        function = getattr(library, name)
+        function.argtypes = [ctypes.c_void_p if a in pointers else a for a in function.argtypes]
 
 
 def _load(path):
@@ -129,10 +130,9 @@ def _array(c_type, convert, values, what):
             try:
                 convert(value)
             except (TypeError, ValueError, OverflowError):
-                raise ShapeOpError(
-                    "%s: item %d: %s expected, found %r"
-                    % (what, i, "a number" if c_type is ctypes.c_double else "a whole number", value)
-                )
+                place = what if len(values) == 1 else "%s: item %d" % (what, i)
+                expected = "a number" if c_type is ctypes.c_double else "a whole number"
+                raise ShapeOpError("%s: %s expected, found %r" % (place, expected, value))
         raise
 
 

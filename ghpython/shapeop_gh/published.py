@@ -26,10 +26,12 @@ class Published(object):
 
     def _add(self, played):
         for place, (type_name, index_lists, weights, scalars) in enumerate(played):
-            ids = self.solver.add(type_name, index_lists, weights) if index_lists else []
+            with plain.blamed(place, type_name):
+                ids = self.solver.add(type_name, index_lists, weights) if index_lists else []
+                if scalars:
+                    self.solver.edit(type_name, ids, scalars)
             self.constraint_count += len(ids)
             if scalars:
-                self.solver.edit(type_name, ids, scalars)
                 self._editable.append([place, ids, scalars])
 
     def _init(self, settings):
@@ -66,7 +68,8 @@ class Published(object):
                     "the new ones" % (place, len(ids), len(scalars))
                 )
             if scalars != in_force:
-                self.solver.edit(type_name, ids, scalars)
+                with plain.blamed(place, type_name):
+                    self.solver.edit(type_name, ids, scalars)
                 editable[2] = scalars
 
 

@@ -52,13 +52,10 @@ class Session(object):
         count = len(self.index_of)
         mapped = []
         for place, (type_name, index_lists, weights, scalars) in enumerate(played):
-            for indices in index_lists:
-                for i in indices:
+            with plain.blamed(place, type_name):
+                for i in (i for indices in index_lists for i in indices):
                     if not 0 <= i < count:
-                        raise ShapeOpError(
-                            'ConstraintSigs: item %d ("%s"): index %d is out of range for %d points'
-                            % (place, type_name, i, count)
-                        )
+                        raise ShapeOpError("index %d is out of range for %d points" % (i, count))
             merged = [[self.index_of[i] for i in indices] for indices in index_lists]
             mapped.append((type_name, merged, weights, scalars))
         return mapped
@@ -70,11 +67,13 @@ class Session(object):
             ids, in_force = self._ids[place], self._played[place]
             changed = [k for k in range(len(ids)) if weights[k] != in_force[2][k]]
             if changed:
-                self.solver.set_weights([ids[k] for k in changed], [weights[k] for k in changed])
+                with plain.blamed(place, type_name):
+                    self.solver.set_weights([ids[k] for k in changed], [weights[k] for k in changed])
                 in_force[2][:] = weights
             changed = [k for k in range(len(scalars)) if scalars[k] != in_force[3][k]]
             if changed:
-                self.solver.edit(type_name, [ids[k] for k in changed], [scalars[k] for k in changed])
+                with plain.blamed(place, type_name):
+                    self.solver.edit(type_name, [ids[k] for k in changed], [scalars[k] for k in changed])
                 in_force[3][:] = scalars
 
     def _update_structure(self, played):
@@ -87,14 +86,15 @@ class Session(object):
                 spare.setdefault(key, []).append((constraint, weights[k], scalars[k] if scalars else None))
         in_force, all_ids, added = [], [], []
         try:
-            for type_name, index_lists, weights, scalars in played:
+            for place, (type_name, index_lists, weights, scalars) in enumerate(played):
                 kept = []
                 for indices in index_lists:
                     same = spare.get((type_name, tuple(indices), bool(scalars)))
                     kept.append(same.pop(0) if same else None)
                 new = [k for k, constraint in enumerate(kept) if constraint is None]
                 if new:
-                    ids = self.solver.add(type_name, [index_lists[k] for k in new], [weights[k] for k in new])
+                    with plain.blamed(place, type_name):
+                        ids = self.solver.add(type_name, [index_lists[k] for k in new], [weights[k] for k in new])
                     added.extend(ids)
                     for k, constraint in zip(new, ids):
                         kept[k] = (constraint, weights[k], None)

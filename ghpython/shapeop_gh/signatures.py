@@ -4,6 +4,8 @@ A constraint signature says what one ConstraintSignature component makes, many c
 {"type": str, "pointIndices": [[int]], "weights": [float], "scalars": [[float]] or []}, one entry per constraint.
 """
 
+from contextlib import contextmanager
+
 from shapeop_gh.errors import ShapeOpError
 
 # The published client's help calls the type so.
@@ -39,6 +41,15 @@ def read(signatures):
         type_name = ALIASES.get(type_name, type_name)
         played.append((type_name, made["pointIndices"], made["weights"], made["scalars"]))
     return played
+
+
+@contextmanager
+def blamed(place, type_name):
+    """Around the calls that send a signature: an error says which one it was."""
+    try:
+        yield
+    except ShapeOpError as error:
+        raise ShapeOpError('ConstraintSigs: item %d ("%s"): %s' % (place, type_name, error))
 
 
 def copied(signatures):

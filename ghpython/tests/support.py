@@ -140,9 +140,9 @@ class Calls(object):
     """Counts the calls of the native library while it is in use: `with Calls() as calls: ... calls["shapeop_solve"]`."""
 
     def __enter__(self):
-        from shapeop_gh import library, solver
+        from shapeop_gh import library
 
-        self._solver, self._load = solver.native, library.load
+        self._library, self._load = library, library.load
         self._counts, real = {}, library.load()
         counts = self._counts
 
@@ -155,10 +155,14 @@ class Calls(object):
         return self
 
     def __exit__(self, *exception):
-        self._solver.load = self._load
+        self._library.load = self._load
 
     def __getitem__(self, name):
         return self._counts.get(name, 0)
+
+    def without(self, name):
+        """The counts of all functions but one."""
+        return dict((n, count) for n, count in self._counts.items() if n != name)
 
     def clear(self):
         self._counts.clear()

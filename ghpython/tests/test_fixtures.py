@@ -20,13 +20,15 @@ def kinds(fixture, key):
     return set(entry["kind"] for entry in fixture[key])
 
 
-def signatures(canvas, fixture, edits):
-    """One signature per constraint, in the order of the ids; `edits` replaces scalars."""
-    made = []
+def signatures(canvas, fixture, edits, made=None):
+    """One signature per constraint, in the order of the ids; `edits` replaces scalars. As Grasshopper does, only the
+    ConstraintSignature components whose inputs changed since `made` are solved again."""
+    made = made or [None] * len(fixture["constraints"])
     for number, constraint in enumerate(fixture["constraints"]):
-        scalars = edits.get(number, constraint["scalars"])
-        kind = str(constraint["type"])
-        made += signature(canvas, kind, [constraint["indices"]], [constraint["weight"]], [scalars] if scalars else [])
+        if made[number] is None or number in edits:
+            scalars = edits.get(number, constraint["scalars"])
+            kind, weight = str(constraint["type"]), constraint["weight"]
+            (made[number],) = signature(canvas, kind, [constraint["indices"]], [weight], [scalars] if scalars else [])
     return made
 
 
@@ -84,6 +86,8 @@ class Published(Played, unittest.TestCase):
                 edits[number] = fixture["points"][fixture["constraints"][number]["indices"][0]]
         forces = [f["force"] for f in fixture["forces"]]
         self.assertTrue(len(forces) <= 1)
+        made = signatures(canvas, fixture, edits)
+        given = [c for p in fixture["points"] for c in p]
 
         def run(reset):
             (settings,) = live.run(
@@ -95,17 +99,13 @@ class Published(Played, unittest.TestCase):
                 Dynamic=fixture["mode"] == "dynamic",
                 Reset=reset,
             )["Settings"]
-            made = solver.run(
-                ConstraintSigs=signatures(canvas, fixture, edits),
-                Points=points([c for p in fixture["points"] for c in p]),
-                Settings=settings,
-            )
+            result = solver.run(ConstraintSigs=made, Points=points(given), Settings=settings)
             self.assertEqual(solver.errors(), [])
-            return flat(made["Points"])
+            return flat(result["Points"])
 
         def tick(events):
-            for event in events:
-                edits[event["id"]] = event["scalars"]
+            if events:
+                signatures(canvas, fixture, dict((e["id"], e["scalars"]) for e in events), made)
             return run(False)
 
         return self.play(fixture, lambda: run(True), tick)
@@ -127,9 +127,11 @@ class Live(Played, unittest.TestCase):
         self.assertEqual((played, left_out), (145, 4))
 
     def play_live(self, fixture):
-        canvas, edits, now = self.canvas, {}, {"damping": fixture["damping"], "timestep": fixture["timestep"]}
+        canvas, now = self.canvas, {"damping": fixture["damping"], "timestep": fixture["timestep"]}
         solver, live, force = [canvas.add(n) for n in ("ShapeOpLiveSolver", "ShapeOpSettingsLive", "ShapeOpForce")]
         forces = [(f["force"], f.get("id") if f["kind"] == "vertex" else None) for f in fixture["forces"]]
+        made = signatures(canvas, fixture, {})
+        given = [c for p in fixture["points"] for c in p]
 
         def run(reset):
             (settings,) = live.run(
@@ -140,14 +142,14 @@ class Live(Played, unittest.TestCase):
                 Dynamic=fixture["mode"] == "dynamic",
                 Reset=reset,
             )["Settings"]
-            made = []
+            acting = []
             for vector, index in forces:
                 indices = None if index is None else tree([index])
-                made += force.run(Force=Vector3d(*vector), PointIndices=indices)["Forces"]
+                acting += force.run(Force=Vector3d(*vector), PointIndices=indices)["Forces"]
             result = solver.run(
-                ConstraintSigs=tree(signatures(canvas, fixture, edits)),
-                Points=tree(points([c for p in fixture["points"] for c in p])),
-                Forces=made,
+                ConstraintSigs=tree(made),
+                Points=tree(points(given)),
+                Forces=acting,
                 Settings=settings,
                 Threshold=0.0,
                 Accelerate=False,
@@ -158,7 +160,7 @@ class Live(Played, unittest.TestCase):
         def tick(events):
             for event in events:
                 if event["kind"] == "editConstraint":
-                    edits[event["id"]] = event["scalars"]
+                    signatures(canvas, fixture, {event["id"]: event["scalars"]}, made)
                 elif event["kind"] == "editVertexForce":
                     forces[event["force_id"]] = (event["force"], event["id"])
                 else:
