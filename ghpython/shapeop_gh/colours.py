@@ -14,7 +14,7 @@ def planarity(ratio, limit):
 
 
 def strain(value, limit):
-    """The colour of a strain: blue where it is positive (tension), red where negative (compression), full at `limit`."""
+    """The colour of a strain: blue where positive (tension), red where negative (compression), full at `limit`."""
     share = min(max(value / _positive(limit), -1.0), 1.0)
     return _between((REST, TENSION if share > 0 else COMPRESSION), abs(share))
 

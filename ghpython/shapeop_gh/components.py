@@ -166,7 +166,9 @@ def _is_on(switch):
 
 
 def _count(least, greatest):
-    return "%d" % least if least == greatest else "%d or more" % least if greatest < 0 else "%d to %d" % (least, greatest)
+    return (
+        "%d" % least if least == greatest else "%d or more" % least if greatest < 0 else "%d to %d" % (least, greatest)
+    )
 
 
 # Seeing what came out.

@@ -56,7 +56,9 @@ def branches(tree):
 
 def lists(tree, what):
     """The branches of a tree input as lists without nulls."""
-    return [[_not_null(v, "%s {%d}" % (what, n), i) for i, v in enumerate(b)] for n, (_, b) in enumerate(branches(tree))]
+    return [
+        [_not_null(v, "%s {%d}" % (what, n), i) for i, v in enumerate(b)] for n, (_, b) in enumerate(branches(tree))
+    ]
 
 
 def tree(item_type, paths_and_lists):

@@ -58,7 +58,9 @@ def _edge_face_vertices(mesh):
 def _face_angle_vertices(mesh):
     """Per corner of every face: the corner, the next one, the one before."""
     return _numbered(
-        [corners[k], corners[(k + 1) % len(corners)], corners[k - 1]] for corners in faces(mesh) for k in range(len(corners))
+        [corners[k], corners[(k + 1) % len(corners)], corners[k - 1]]
+        for corners in faces(mesh)
+        for k in range(len(corners))
     )
 
 
@@ -111,4 +113,6 @@ def nearest(points, place):
     if not points:
         raise ShapeOpError("Points: at least one expected, found none")
     x, y, z = place.X, place.Y, place.Z
-    return min(range(len(points)), key=lambda i: (points[i].X - x) ** 2 + (points[i].Y - y) ** 2 + (points[i].Z - z) ** 2)
+    return min(
+        range(len(points)), key=lambda i: (points[i].X - x) ** 2 + (points[i].Y - y) ** 2 + (points[i].Z - z) ** 2
+    )

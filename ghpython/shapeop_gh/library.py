@@ -95,9 +95,11 @@ _texts = {}
 
 
 def to_c(text):
-    """`text` for a `const char *`. Kept for ever, as IronPython frees none of them: pass names, of which there are few."""
+    """`text` for a `const char *`. Kept for ever, as IronPython frees none of them: pass names, which are few."""
     if text not in _texts:
-        _texts[text] = ctypes.c_char_p(text if isinstance(text, str) and sys.version_info[0] == 2 else text.encode("utf-8"))
+        _texts[text] = ctypes.c_char_p(
+            text if isinstance(text, str) and sys.version_info[0] == 2 else text.encode("utf-8")
+        )
     return _texts[text]
 
 

@@ -46,7 +46,7 @@ class Published(object):
         self.solver.delete()
 
     def tick(self, point_count, signatures, iterations):
-        """Edits what is editable, then solves. The library takes an edit without a change as none, so those are left out."""
+        """Edits what is editable, then solves. Edits without a change are left out: they are none to the library."""
         if point_count != self._point_count:
             raise ShapeOpError(
                 "Points: %d expected, as at the last Reset, found %d: Reset takes the new ones"
@@ -64,8 +64,8 @@ class Published(object):
             type_name, _, _, scalars = played[place] if place < len(played) else ("", None, None, [])
             if len(scalars) != len(ids):
                 raise ShapeOpError(
-                    "ConstraintSigs: item %d: %d lists of scalars expected, as at the last Reset, found %d: Reset takes "
-                    "the new ones" % (place, len(ids), len(scalars))
+                    "ConstraintSigs: item %d: %d lists of scalars expected, as at the last Reset, found %d: Reset "
+                    "takes the new ones" % (place, len(ids), len(scalars))
                 )
             if scalars != in_force:
                 with plain.blamed(place, type_name):

@@ -134,7 +134,8 @@ def _for_all(values, count, what, singular):
     if len(values) == 1:
         return values * count
     raise ShapeOpError(
-        "%s: one %s for all or one for each of the %d constraints expected, found %d" % (what, singular, count, len(values))
+        "%s: one %s for all or one for each of the %d constraints expected, found %d"
+        % (what, singular, count, len(values))
     )
 
 

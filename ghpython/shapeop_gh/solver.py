@@ -38,14 +38,25 @@ class Solver(object):
         weights = native.doubles(weights, type_name + " Weights")
         self._check(
             self._library.shapeop_addConstraints(
-                self._handle, native.to_c(type_name), indices, len(indices), counts, len(counts),
-                weights, len(weights), None, 0, 0, 0, ids
+                self._handle,
+                native.to_c(type_name),
+                indices,
+                len(indices),
+                counts,
+                len(counts),
+                weights,
+                len(weights),
+                None,
+                0,
+                0,
+                0,
+                ids,
             )
         )
         return ids[:]
 
     def edit(self, type_name, ids, scalar_lists):
-        """Replaces the scalars of constraints of one type; `scalar_lists`: one list per id. Those in force cost nothing."""
+        """Replaces the scalars of constraints of one type; `scalar_lists`: one list per id."""
         alike = len(set(len(one) for one in scalar_lists)) == 1
         batches = [(ids, scalar_lists)] if alike else [([i], [s]) for i, s in zip(ids, scalar_lists)]
         for some_ids, some_lists in batches:
@@ -116,9 +127,7 @@ class Solver(object):
         report.struct_size = ctypes.sizeof(abi.shapeop_solve_report)
         nothing = abi.shapeop_progress_callback()
         self._check(
-            self._library.shapeop_solveUntil(
-                self._handle, ctypes.byref(options), nothing, None, ctypes.byref(report)
-            )
+            self._library.shapeop_solveUntil(self._handle, ctypes.byref(options), nothing, None, ctypes.byref(report))
         )
         if report.outcome == abi.SO_OUTCOME_UNBOUNDED:
             raise ShapeOpError(native.error_of(self._library, self._handle))

@@ -137,7 +137,7 @@ def signature(canvas, constraint_type, indices, weights=(1.0,), scalars=()):
 
 
 class Calls(object):
-    """Counts the calls of the native library while it is in use: `with Calls() as calls: ... calls["shapeop_solve"]`."""
+    """Counts the calls of the native library by new solvers: `with Calls() as calls: ... calls["shapeop_solve"]`."""
 
     def __enter__(self):
         from shapeop_gh import library
@@ -184,7 +184,9 @@ class Direct(object):
 
     def edit(self, constraint_type, constraint, scalars):
         array = doubles(scalars)
-        assert self.library.shapeop_editConstraint(self.op, constraint_type.encode(), constraint, array, len(array)) == 0
+        assert (
+            self.library.shapeop_editConstraint(self.op, constraint_type.encode(), constraint, array, len(array)) == 0
+        )
 
     def points(self):
         array = doubles([0.0] * (3 * self.count))

@@ -1,4 +1,4 @@
-"""The ordinary mistakes: the component shows an error that names them, its outputs are empty, the next good input works."""
+"""The ordinary mistakes: an error names them, the outputs are empty, and the next good input works."""
 
 import unittest
 
@@ -33,9 +33,9 @@ class Mistakes(unittest.TestCase):
             ("Plane", signature(self.canvas, "Plane", [[0, 1, 2]], [1.0], [[1.0]])),
             ("-5", signature(self.canvas, "Plane", [[0, 1, 2]], [-5.0])),
             ("Closeness", signature(self.canvas, "Closeness", [[0]], [1.0], [[NAN, 0.0, 0.0]])),
-            ("ConstraintSigs: item 0", ["Plane"]),
-            ("ConstraintSigs: item 0", [dict(good, weights=[1.0, 2.0])]),
-            ("ConstraintSigs: item 1", [good, {"type": "Plane"}]),
+            ("a constraint signature expected", ["Plane"]),
+            ("Weights: one weight for all", [dict(good, weights=[1.0, 2.0])]),
+            ("a constraint signature expected", [good, {"type": "Plane"}]),
         ]
 
     def refused(self, component, text, **given):
@@ -78,7 +78,9 @@ class Mistakes(unittest.TestCase):
         solver = self.canvas.add("ShapeOpConstraintSolver")
         solver.run(ConstraintSigs=good, Points=points(CORNERS), Settings=self.reset)
         fewer = signature(self.canvas, "Closeness", [[0]], [1.0], targets[:1])
-        self.refused(solver, "2 lists of scalars expected", ConstraintSigs=fewer, Points=points(CORNERS), Settings=self.run)
+        self.refused(
+            solver, "2 lists of scalars expected", ConstraintSigs=fewer, Points=points(CORNERS), Settings=self.run
+        )
         self.refused(solver, "Points: 4 expected", ConstraintSigs=good, Points=points(CORNERS[:9]), Settings=self.run)
         self.assertEqual(solver.run(ConstraintSigs=good, Points=points(CORNERS), Settings=self.run)["Iterations"], 5)
         self.assertEqual(solver.errors(), [])

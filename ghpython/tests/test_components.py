@@ -71,7 +71,7 @@ class Folders(unittest.TestCase):
         for name in NAMES:
             head, rest = text(COMPONENTS, name, "code.py").split(EXPECTED_BOOTSTRAP)
             self.assertEqual(head, '"""%s"""\n\n' % metadata(name)["description"])
-            bootstrap, end, call = rest.partition("restart Rhino\" % error\n    )\n")
+            bootstrap, end, call = rest.partition('restart Rhino" % error\n    )\n')
             self.assertTrue(end)
             parts.append(bootstrap + end)
             found = re.match(r"^\n([\w, ]+) = host\.run\(\s*ghenv, (\d+), components\.\w+(, [\w, ]+)?\s*\)\n$", call)
@@ -108,7 +108,7 @@ class Folders(unittest.TestCase):
     def test_no_list_of_constraint_types_is_written_a_second_time(self):
         # Two are named for what they do: handles are Closeness, and the published client's name of Angle is known.
         allowed = {"components.py": {"Closeness"}, "signatures.py": {"Angle"}}
-        types = re.findall(r"^\| (\w+) \|.*\|$", text(ROOT, "docs", "constraints.md"), re.M)
+        types = re.findall(r"^\| ([A-Z]\w+) \|.*\|$", text(ROOT, "docs", "constraints.md"), re.M)
         self.assertTrue(len(types) > 15 and "Closeness" in types)
         for name in sorted(os.listdir(os.path.join(GHPYTHON, "shapeop_gh"))):
             if name.endswith(".py") and name != "_abi.py":

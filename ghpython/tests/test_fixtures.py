@@ -13,7 +13,7 @@ def fixtures():
         if name.endswith(".json"):
             with open(os.path.join(FIXTURES, name)) as file:
                 for fixture in json.load(file):
-                    yield name, fixture
+                    yield fixture
 
 
 def kinds(fixture, key):
@@ -37,7 +37,9 @@ def share_of_tolerance(fixture, snapshot, solved):
     diagonal = sum((max(p[c] for p in given) - min(p[c] for p in given)) ** 2 for c in range(3)) ** 0.5
     tolerance = max(1e-9, 1e4 * fixture["sensitivity_to_1e_minus15_input_noise"][snapshot]) * diagonal
     expected = fixture["expected"][snapshot]
-    return max(abs(a[c] - b) / tolerance for a, row in zip(expected, zip(*[iter(solved)] * 3)) for c, b in enumerate(row))
+    return max(
+        abs(a[c] - b) / tolerance for a, row in zip(expected, zip(*[iter(solved)] * 3)) for c, b in enumerate(row)
+    )
 
 
 class Played(object):
@@ -66,7 +68,7 @@ class Played(object):
 class Published(Played, unittest.TestCase):
     def test_every_fixture_without_vertex_forces_gives_the_reference_points(self):
         played, worst = 0, 0.0
-        for name, fixture in fixtures():
+        for fixture in fixtures():
             if "vertex" in kinds(fixture, "forces"):
                 continue
             self.assertTrue(kinds(fixture, "events") <= {"editConstraint"})
@@ -115,7 +117,7 @@ class Published(Played, unittest.TestCase):
 class Live(Played, unittest.TestCase):
     def test_plain_iterations_give_the_reference_points_with_forces_and_edits_while_it_runs(self):
         played, left_out, worst = 0, 0, 0.0
-        for name, fixture in fixtures():
+        for fixture in fixtures():
             # The component has no ports for these: static solving has no time step, and nothing initialises anew alone.
             static = fixture["mode"] == "static"
             if "reinit" in kinds(fixture, "events") or (static and "setTimeStep" in kinds(fixture, "events")):

@@ -56,9 +56,7 @@ class Patterns(unittest.TestCase):
 
     def test_face_angle_vertices_are_corner_next_and_previous(self):
         branches = [branch for _, branch in indices("faceAngleVertices", two_faces())]
-        self.assertEqual(
-            branches, [[0, 1, 3], [1, 2, 0], [2, 3, 1], [3, 0, 2], [1, 4, 2], [4, 2, 1], [2, 1, 4]]
-        )
+        self.assertEqual(branches, [[0, 1, 3], [1, 2, 0], [2, 3, 1], [3, 0, 2], [1, 4, 2], [4, 2, 1], [2, 1, 4]])
 
     def test_naked_vertices_are_sorted_by_loop(self):
         mesh = grid(4, 4)

@@ -48,7 +48,10 @@ class Library(unittest.TestCase):
         for text, source in (
             ("is not the ShapeOp library", "int hello(void) { return 0; }"),
             ("has ABI version 99", "int shapeop_abiVersion(void) { return 99; }"),
-            ("is older than these components", "int shapeop_abiVersion(void) { return %d; }" % library.declarations().ABI_VERSION),
+            (
+                "is older than these components",
+                "int shapeop_abiVersion(void) { return %d; }" % library.declarations().ABI_VERSION,
+            ),
         ):
             path = os.path.join(self.folder, "lib%d.so" % len(text))
             with open(path + ".c", "w") as file:
@@ -80,7 +83,9 @@ class Library(unittest.TestCase):
 
     def solved(self):
         canvas = Canvas()
-        made = signature(canvas, "Plane", [[0, 1, 2, 3]]) + signature(canvas, "Closeness", [[0]], [0.5], [[0.0, 0.1, 0.2]])
+        made = signature(canvas, "Plane", [[0, 1, 2, 3]]) + signature(
+            canvas, "Closeness", [[0]], [0.5], [[0.0, 0.1, 0.2]]
+        )
         given = dict(ConstraintSigs=tree(made), Points=tree(points(CORNERS)))
         live, once = canvas.add("ShapeOpLiveSolver"), canvas.add("ShapeOpOneShotSolver")
         types = canvas.add("ShapeOpConstraintTypes").run()["Types"]
@@ -103,7 +108,12 @@ class Library(unittest.TestCase):
         solver = Solver()
         solver.set_points(CORNERS)
         solver.delete()
-        for call in (lambda: solver.points(), lambda: solver.solve(1), lambda: solver.set_points(CORNERS), lambda: solver.energy()):
+        for call in (
+            lambda: solver.points(),
+            lambda: solver.solve(1),
+            lambda: solver.set_points(CORNERS),
+            lambda: solver.energy(),
+        ):
             self.assertRaises(ShapeOpError, call)
 
 
@@ -191,12 +201,16 @@ class Bootstrap(unittest.TestCase):
     def test_shapeop_home_comes_first(self):
         self.install("appdata/McNeel/Rhinoceros/packages/8.0/ShapeOp/9.0.0", "9.0.0")
         self.install("mine", "mine")
-        out, err = self.run_code(APPDATA=os.path.join(self.home, "appdata"), SHAPEOP_HOME=os.path.join(self.home, "mine"))
+        out, err = self.run_code(
+            APPDATA=os.path.join(self.home, "appdata"), SHAPEOP_HOME=os.path.join(self.home, "mine")
+        )
         self.assertEqual(out, "mine", err)
 
     def test_a_folder_that_python_knows_is_enough(self):
         self.install("scripts", "scripts")
-        out, err = self.run_code(PYTHONPATH=os.path.join(self.home, "scripts"), JYTHONPATH=os.path.join(self.home, "scripts"))
+        out, err = self.run_code(
+            PYTHONPATH=os.path.join(self.home, "scripts"), JYTHONPATH=os.path.join(self.home, "scripts")
+        )
         self.assertEqual(out, "scripts", err)
 
     def test_where_there_is_none_the_error_tells_how_to_install(self):

@@ -90,13 +90,21 @@ class Live(Case):
         all_points = points(self.given)
         for n, point in enumerate(all_points):
             given.Add(point, GH_Path(3, n // 7))
-        for path, made in ((GH_Path(0, 5), self.planes()), (GH_Path(2, 1), self.planes()), (GH_Path(2, 1), self.held())):
+        for path, made in (
+            (GH_Path(0, 5), self.planes()),
+            (GH_Path(2, 1), self.planes()),
+            (GH_Path(2, 1), self.held()),
+        ):
             sent.Add(made[0], path)
         result = self.solver.run(ConstraintSigs=sent, Points=given, Reset=True)
-        self.assertEqual([(path, len(branch)) for path, branch in plain(result["Points"])], [([3, 0], 7), ([3, 1], 7), ([3, 2], 6)])
+        self.assertEqual(
+            [(path, len(branch)) for path, branch in plain(result["Points"])], [([3, 0], 7), ([3, 1], 7), ([3, 2], 6)]
+        )
         self.assertEqual(self.where(result), self.given)
         violations = plain(result["Violations"])
-        self.assertEqual([(path, len(b)) for path, b in violations], [([0, 5, 0], 12), ([2, 1, 0], 12), ([2, 1, 1], 20)])
+        self.assertEqual(
+            [(path, len(b)) for path, b in violations], [([0, 5, 0], 12), ([2, 1, 0], 12), ([2, 1, 1], 20)]
+        )
         # Held points are where they are held; hardly a face is planar.
         self.assertEqual(violations[2][1], [0.0] * 20)
         self.assertEqual(violations[0][1], violations[1][1])
@@ -156,7 +164,10 @@ class Live(Case):
         self.assertAlmostEqual(plain(result["Violations"])[0][1][0], 0.0, 6)
 
     def test_a_tick_without_changes_sends_nothing(self):
-        made, force = self.planes() + self.held(), self.canvas.add("ShapeOpForce").run(Force=Vector3d(0, 0, -0.1))["Forces"]
+        made, force = (
+            self.planes() + self.held(),
+            self.canvas.add("ShapeOpForce").run(Force=Vector3d(0, 0, -0.1))["Forces"],
+        )
         given = dict(Points=tree(points(self.given)), Forces=force, Threshold=0.0)
         expected = dict.fromkeys(["shapeop_solve", "shapeop_getPoints", "shapeop_energy"], 1)
         expected.update(dict.fromkeys(["shapeop_constraintCount", "shapeop_getViolations"], 1))
@@ -217,7 +228,10 @@ class Live(Case):
         line = [0, 0, 0, 1, 0, 0, 2, 0, 0]
         made = signature(self.canvas, "Closeness", [[0], [1], [2]], [4.0])
         force = self.canvas.add("ShapeOpForce").run
-        every, one = force(Force=Vector3d(0, 0, -1.0))["Forces"], force(Force=Vector3d(0, 2.0, 0), PointIndices=tree([1]))["Forces"]
+        every, one = (
+            force(Force=Vector3d(0, 0, -1.0))["Forces"],
+            force(Force=Vector3d(0, 2.0, 0), PointIndices=tree([1]))["Forces"],
+        )
         given = dict(Points=tree(points(line)), Threshold=1e-12)
         x = self.where(self.settle(made, Forces=every + one, **given))
         for found, expected in zip(x, [0, 0, -0.25, 1, 0.5, -0.25, 2, 0, -0.25]):
@@ -250,7 +264,9 @@ class Live(Case):
         self.assertTrue(max(abs(a - b) for a, b in zip(x[21:24], [0.0, 3.0, 2.0])) < 0.01)
         again = component.run(Points=all_points, Handles=[Point3d(0.0, 3.0, 2.0)], Reset=True)
         self.assertEqual(plain(again["PointIndices"]), [([0], [15])])
-        curve = component.run(Points=all_points, Handles=[LineCurve(Point3d(4, 0, 0), Point3d(4, 0, 9))], Strength=[5.0], Reset=True)
+        curve = component.run(
+            Points=all_points, Handles=[LineCurve(Point3d(4, 0, 0), Point3d(4, 0, 9))], Strength=[5.0], Reset=True
+        )
         (made,) = curve["ConstraintSigs"]
         self.assertEqual((made["pointIndices"], made["scalars"], made["weights"]), ([[4]], [[4, 0, 9]], [5.0]))
 

@@ -64,7 +64,9 @@ class Published(unittest.TestCase):
             direct = self.direct(dynamic)
             made = self.run_live(TARGETS, Reset=True, **given)
             self.assertEqual((flat(made["Points"]), made["Iterations"], made["ConstraintCount"]), (CORNERS, 0, 6))
-            for count, (targets, paused) in enumerate([(TARGETS, False), (moved, False), (moved, True), (moved, False)]):
+            for count, (targets, paused) in enumerate(
+                [(TARGETS, False), (moved, False), (moved, True), (moved, False)]
+            ):
                 made = self.run_live(targets, Reset=False, Pause=paused, **given)
                 # A paused tick solves once too.
                 self.assertEqual(flat(made["Points"]), self.direct_tick(direct, targets))
@@ -101,7 +103,9 @@ class Published(unittest.TestCase):
             self.assertEqual(self.solver.component.Message, message)
         first = self.run_live(TARGETS, Reset=False)
         self.assertEqual(self.solver.component.Message, "Solver is Running Live")
-        given = dict(ConstraintSigs=self.signatures(TARGETS), Points=points(CORNERS), Settings=self.settings(Reset=False))
+        given = dict(
+            ConstraintSigs=self.signatures(TARGETS), Points=points(CORNERS), Settings=self.settings(Reset=False)
+        )
         second = self.solver.run_scheduled(**given)
         self.assertEqual(second["Iterations"], first["Iterations"] + 5)
 

@@ -57,7 +57,9 @@ class Made(unittest.TestCase):
         self.assertIn(text, self.component.errors()[0])
 
     def test_mismatched_counts_are_errors_that_name_the_input(self):
-        self.refused("Weights: one weight for all or one for each of the 2 constraints expected, found 3", Weights=[1.0] * 3)
+        self.refused(
+            "Weights: one weight for all or one for each of the 2 constraints expected, found 3", Weights=[1.0] * 3
+        )
         self.refused("Scalars: one list of scalars", Scalars=tree([1.0], [1.0], [1.0]))
 
     def test_what_is_no_number_is_an_error_that_names_it(self):
@@ -93,7 +95,15 @@ class Settings(unittest.TestCase):
         )
         (made,) = component.run(**given)["Settings"]
         expected = dict(
-            mode="live", iterations=3, mass=2.0, damping=0.5, timeStep=0.2, unaryVector=force, dynamic=False, pause=True, reset=False
+            mode="live",
+            iterations=3,
+            mass=2.0,
+            damping=0.5,
+            timeStep=0.2,
+            unaryVector=force,
+            dynamic=False,
+            pause=True,
+            reset=False,
         )
         self.assertEqual(made, expected)
 

@@ -1,4 +1,4 @@
-"""Solves while you work: drag handles, change weights and targets, add and remove constraints. Stops by itself when the points no longer move."""
+"""Solves while you drag handles and change weights, targets and constraints; stops when the points no longer move."""
 
 # The same lines in every component: they find the package shapeop_gh.
 import os
@@ -32,5 +32,16 @@ except ImportError as error:
     )
 
 Points, Iterations, Energy, Violations, Move, Stopped = host.run(
-    ghenv, 6, components.live_solver, ConstraintSigs, Points, Forces, Settings, Threshold, Tolerance, Accelerate, On, Reset
+    ghenv,
+    6,
+    components.live_solver,
+    ConstraintSigs,
+    Points,
+    Forces,
+    Settings,
+    Threshold,
+    Tolerance,
+    Accelerate,
+    On,
+    Reset,
 )
