@@ -10,8 +10,8 @@ class Measure:
     what: str
     value: float
     unit: str = ""
-    most: float = None
-    least: float = None
+    most: float | None = None
+    least: float | None = None
 
     def __post_init__(self):
         self.value = float(self.value)
@@ -33,5 +33,10 @@ class Measure:
 
 
 def number(value):
-    """Three significant digits; whole numbers as they are."""
-    return str(int(value)) if float(value).is_integer() and abs(value) < 1e6 else "%.3g" % value
+    """Three significant digits; whole numbers and the whole part of large ones as they are; what is only round-off as
+    such."""
+    if 0 < abs(value) < 1e-9:
+        return "< 1e-9"
+    if float(value).is_integer() or abs(value) >= 1000:
+        return "%.0f" % value
+    return ("%.3g" % value).replace("e-0", "e-")

@@ -1,4 +1,5 @@
-"""What the figures claim, measured on points and faces alone. Lengths in model units, angles in degrees, planarity in percent."""
+"""What the figures claim, measured on points and faces alone. Lengths in model units, angles in degrees, planarity in
+percent."""
 
 import numpy as np
 
@@ -57,8 +58,9 @@ def areas(points, faces):
 
 
 def best_circle(corners):
-    """The circle through points in space that is the best in the least-squares sense: `(centre, radius, u, v)`, u and v spanning
-    its plane. The plane is the best-fit plane; the circle in it starts from the algebraic fit and is refined by Gauss-Newton on the true distances."""
+    """The circle through points in space that is the best in the least-squares sense: `(centre, radius, u, v)`, u and v
+    spanning its plane. The plane is the best-fit plane; the circle in it starts from the algebraic fit and is refined
+    by Gauss-Newton on the true distances."""
     middle = corners.mean(axis=0)
     u, v = np.linalg.svd(corners - middle)[2][:2]
     flat = np.stack([(corners - middle) @ u, (corners - middle) @ v], axis=1)
@@ -83,9 +85,10 @@ def circle_distances(corners):
 
 
 def nearest_shapes(shapes, corners, allow_scale=False):
-    """For each polygon, of k corners: which of the shapes (m, k, 3) is nearest to it in the least-squares sense, when it is moved,
-    turned (not mirrored) and, with `allow_scale`, scaled, starts at any corner and runs either way round; and how far its farthest
-    corner then is. `corners` is (n, k, 3); returns two arrays of n (Kabsch 1976, Umeyama 1991)."""
+    """For each polygon, of k corners: which of the shapes (m, k, 3) is nearest to it in the least-squares sense if it
+    is moved, turned (not mirrored) and, with `allow_scale`, scaled, starts at any corner and runs either way round;
+    and how far its farthest corner then is. `corners` is (n, k, 3); returns two arrays of n (Kabsch 1976, Umeyama
+    1991)."""
     corners = corners - corners.mean(axis=1, keepdims=True)
     least = np.full(len(corners), np.inf)
     index, farthest = np.zeros(len(corners), dtype=int), np.zeros(len(corners))
@@ -104,3 +107,25 @@ def nearest_shapes(shapes, corners, allow_scale=False):
                 least[is_nearer], index[is_nearer] = squares[is_nearer], which
                 farthest[is_nearer] = distances[is_nearer].max(axis=1)
     return index, farthest
+
+
+def face_normals(points, faces):
+    """The unit normals of polygons in space: the directions of the sums of their cross products."""
+    normals = []
+    for face in faces:
+        corners = points[face] - points[face].mean(axis=0)
+        normals.append(np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0))
+    normals = np.array(normals)
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def face_face_angles(points, faces):
+    """The angle between every two faces that share an edge: 180 degrees if they are level. Faces are oriented alike."""
+    faces_of = {}
+    for k, face in enumerate(faces):
+        for start, end in zip(face, face[1:] + face[:1], strict=True):
+            faces_of.setdefault(frozenset((start, end)), []).append(k)
+    pairs = np.array([both for both in faces_of.values() if len(both) == 2])
+    normals = face_normals(points, faces)
+    cosines = np.sum(normals[pairs[:, 0]] * normals[pairs[:, 1]], axis=1)
+    return 180 - np.degrees(np.arccos(np.clip(cosines, -1, 1)))

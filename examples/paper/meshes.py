@@ -1,10 +1,11 @@
-"""Meshes of the figures, made by rule, and OBJ files of them. A mesh is `(points, faces)`: an (n, 3) array and lists of indices."""
+"""Meshes of the figures, made by rule, and OBJ files of them. A mesh is `(points, faces)`: an (n, 3) array and lists
+of indices."""
 
 import math
 
 import numpy as np
 
-#: Decimals of coordinates in files: a ten-thousandth of a millimetre of a model in metres, and the same text on every machine.
+#: Decimals of coordinates in files: a ten-thousandth of a millimetre of a model in metres, and one text everywhere.
 DECIMALS = 7
 
 
@@ -60,7 +61,7 @@ def cloth(count, size):
 
 
 def box(length, width, height):
-    """A closed box of unit squares along x, y and z, its normals outward; one end lies at x = 0, one at x = `length`."""
+    """A closed box of unit squares along x, y and z, normals outward; its ends lie at x = 0 and x = `length`."""
     sizes = (length, width, height)
     sides = []
     for axis in range(3):
@@ -78,10 +79,8 @@ def box(length, width, height):
 
 
 def hexagon(count, edge):
-    """A flat regular hexagon as three rhombi of `count * count` quads that meet in its centre, all edges of one length."""
-    directions = [
-        np.array([math.cos(math.radians(a)), math.sin(math.radians(a)), 0.0]) for a in (0, 120, 240)
-    ]
+    """A flat regular hexagon as three rhombi of `count * count` quads that meet in its centre, all edges equal."""
+    directions = [np.array([math.cos(math.radians(a)), math.sin(math.radians(a)), 0.0]) for a in (0, 120, 240)]
     polygons = []
     for k in range(3):
         u, v = directions[k] * edge, directions[(k + 1) % 3] * edge
@@ -89,6 +88,31 @@ def hexagon(count, edge):
             for j in range(count):
                 polygons.append([i * u + j * v, (i + 1) * u + j * v, (i + 1) * u + (j + 1) * v, i * u + (j + 1) * v])
     return welded(polygons)
+
+
+def snub_square(count):
+    """`2 count²` squares and the regular triangles between them, all edges 1, five faces about each inner vertex;
+    centred, flat. The squares, in a chequerboard, are turned by 60 and 30 degrees; three of their corners that are 1
+    apart make a triangle."""
+    spacing = math.sqrt(2 + math.sqrt(3))
+    squares = []
+    for i in range(count):
+        for j in range(count):
+            for shift, turn in ((0.0, 60), (0.5, 30)):
+                centre = ((np.array([i, j]) + shift) - (count - 0.5) / 2) * spacing
+                angles = np.radians(turn + 90 * np.arange(4))
+                x, y = centre[:, None] + np.stack([np.cos(angles), np.sin(angles)]) / math.sqrt(2)
+                squares.append(np.stack([x, y, np.zeros(4)], axis=1))
+    points, faces = welded(squares)
+    distances = np.linalg.norm(points[:, None] - points[None], axis=2)
+    beside = [set(np.flatnonzero(np.abs(row - 1) < 1e-6).tolist()) for row in distances]
+    for a in range(len(points)):
+        for b in sorted(beside[a]):
+            for c in sorted(beside[a] & beside[b]):
+                if a < b < c:
+                    is_left = np.cross(points[b] - points[a], points[c] - points[a])[2] > 0
+                    faces.append([a, b, c] if is_left else [a, c, b])
+    return points, faces
 
 
 def welded(polygons):
@@ -104,3 +128,42 @@ def welded(polygons):
             face.append(indices[key])
         faces.append(face)
     return np.array(points, dtype=float), faces
+
+
+def canopy(around, rings, seed):
+    """A random canopy between two rough boundaries: `around * rings` quads about a middle. Smooth waves lift, push
+    and twist it, the same ones at every resolution, and every vertex is shaken by up to a fifth of its edges. Radii
+    grow evenly by a factor from ring to ring, so that faces are about as wide as long."""
+    random = np.random.RandomState(seed)  # whose numbers are the same in every version of numpy
+    waves = [
+        (k, random.uniform(-1, 1, 3), random.uniform(0, 2 * math.pi, 3), random.uniform(0.5, 2, 3))
+        for k in (1, 2, 3, 4)
+    ]
+    inner, outer = 3.0, 10.0
+    points = []
+    for j in range(rings + 1):
+        share = j / rings
+        for i in range(around):
+            angle = 2 * math.pi * i / around
+            lift, push, twist = (
+                sum(
+                    size[c] / k * math.sin(k * angle + phase[c] + 2 * speed[c] * share)
+                    for k, size, phase, speed in waves
+                )
+                for c in range(3)
+            )
+            radius = inner * (outer / inner) ** share
+            edge = 2 * math.pi * radius / around
+            radius *= 1 + 0.10 * push
+            angle += 0.5 * share**1.5 + 0.10 * twist
+            height = 4.0 * math.sin(math.pi * 0.75 * share) + 1.2 * share * lift
+            shaken = random.uniform(-0.2, 0.2, 3) * edge
+            points.append(
+                [radius * math.cos(angle) + shaken[0], radius * math.sin(angle) + shaken[1], height + 0.5 * shaken[2]]
+            )
+    faces = [
+        [around * j + i, around * j + (i + 1) % around, around * (j + 1) + (i + 1) % around, around * (j + 1) + i]
+        for j in range(rings)
+        for i in range(around)
+    ]
+    return np.array(points), faces

@@ -1,4 +1,5 @@
-"""Patterns: from the faces of a mesh to the point indices of constraints. Pure Python; README.md states what each one gives."""
+"""Patterns: from the faces of a mesh to the point indices of constraints. Pure Python; README.md states what each one
+gives."""
 
 
 def edges(faces):
@@ -31,9 +32,7 @@ def vertices_all(vertex_count, faces):
 
 
 def face_angle_vertices(vertex_count, faces):
-    return [
-        [face[i], face[(i + 1) % len(face)], face[i - 1]] for face in faces for i in range(len(face))
-    ]
+    return [[face[i], face[(i + 1) % len(face)], face[i - 1]] for face in faces for i in range(len(face))]
 
 
 def edge_face_vertices(vertex_count, faces):
@@ -62,8 +61,9 @@ def naked_vertices(vertex_count, faces):
 
 
 def hinges(faces):
-    """For bending between polygons, no pattern but an explicit tree: for each inner edge, its two vertices, then from each face the
-    vertex that follows the edge in that face's order. Of triangles it gives what `edgeFaceVertices` gives."""
+    """For bending between polygons, no pattern but an explicit tree: for each inner edge, its two vertices, then from
+    each face the vertex that follows the edge in that face's order. Of triangles it gives what `edgeFaceVertices`
+    gives."""
     followers = {}
     for face in faces:
         for i, start in enumerate(face):

@@ -14,7 +14,7 @@ FOLDER = Path(__file__).resolve().parent
 
 
 class Solved:
-    """A solved model: its mesh, the tree of indices of each constraint by name, and the points after every solve call."""
+    """A solved model: its mesh, the trees of indices by constraint name, and the points after every solve call."""
 
     def __init__(self, model, points, faces, trees):
         self.model, self.points, self.faces, self.trees = model, points, faces, trees
@@ -32,7 +32,10 @@ def read_spec(number):
 def spec_text(spec):
     """The JSON text of a spec: innermost lists on one line each, numbers with as many decimals as in meshes."""
     text = json.dumps(_rounded(spec), indent=1)
-    return re.sub(r"\[[^][{}]*\]", lambda found: " ".join(found[0].split()).replace("[ ", "[").replace(" ]", "]"), text) + "\n"
+    return (
+        re.sub(r"\[[^][{}]*\]", lambda found: " ".join(found[0].split()).replace("[ ", "[").replace(" ]", "]"), text)
+        + "\n"
+    )
 
 
 def mesh_of(model):

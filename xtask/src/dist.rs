@@ -9,7 +9,7 @@
 //! | `share/licenses/shapeop/` | the licences |
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 
@@ -77,7 +77,8 @@ pub fn run(folder: &Path, profile: &str) -> Result<()> {
     }
     for (name, place) in BUILD_SYSTEM_FILES {
         let template = root.join("bindings/cmake").join(format!("{name}.in"));
-        let text = fs::read_to_string(&template).with_context(|| format!("{} could not be read", template.display()))?;
+        let text =
+            fs::read_to_string(&template).with_context(|| format!("{} could not be read", template.display()))?;
         write(&folder.join(place).join(name), &fill_in(&text).with_context(|| template.display().to_string())?)?;
     }
     for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
@@ -168,7 +169,10 @@ mod tests {
 
     #[test]
     fn a_template_with_an_unknown_placeholder_is_refused() {
-        assert_eq!(fill_in("@VERSION@ in lib/@LIBRARY@").unwrap(), format!("{} in lib/{LIBRARY}", env!("CARGO_PKG_VERSION")));
+        assert_eq!(
+            fill_in("@VERSION@ in lib/@LIBRARY@").unwrap(),
+            format!("{} in lib/{LIBRARY}", env!("CARGO_PKG_VERSION"))
+        );
         assert!(fill_in("@VERSION@ @VERSOIN@").is_err());
     }
 
@@ -179,4 +183,9 @@ mod tests {
         assert_eq!(compatible_prefix("1.2.3"), "1");
         assert_eq!(compatible_prefix("10.2.3"), "10");
     }
+}
+
+/// The library in a folder that [`run`] filled.
+pub fn library(folder: &Path) -> PathBuf {
+    folder.join("lib").join(LIBRARY)
 }

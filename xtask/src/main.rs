@@ -1,12 +1,16 @@
 //! `cargo xtask`: set-up and checks. No product code.
 
 mod bench;
+mod bindings;
 mod declarations;
 mod dist;
 mod docs;
 mod header;
+mod languages;
+mod setup;
 mod shell;
 mod show;
+mod suites;
 mod test;
 
 use std::path::PathBuf;

@@ -21,7 +21,9 @@ constexpr int side = 30;                     // points along each side
 constexpr double spacing = 1.0 / (side - 1); // metres: the cloth is 1 m wide, and gravity is in metres per second²
 constexpr double mass = 0.5 / (side * side); // of each point: the cloth weighs half a kilogram
 
-int at(int column, int row) { return row * side + column; }
+int at(int column, int row) {
+    return row * side + column;
+}
 
 // Threads may stretch by 5 % and shrink by 10 %, as cloth gives way to compression; lengths are in model units.
 void add_threads(shapeop::Solver &solver) {

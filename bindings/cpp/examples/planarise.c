@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Faces are point indices behind each other; counts says how many belong to each. This is how the library takes them. */
+/* Faces are point indices behind each other; counts says how many belong to each: the library takes them so. */
 typedef struct Mesh {
     double *points;
     int *corners, *counts;
@@ -103,14 +103,14 @@ static double worst_face(ShapeOpSolver *op, const Mesh *mesh) {
 /* Called after every iteration. Returning anything but 0 would end the solve. */
 static int show_progress(const shapeop_progress *progress, void *user) {
     (void)user;
-    if (progress->iteration % 10 == 0) {
+    if (progress->iteration % 50 == 0) {
         printf("iteration %u: energy %g\n", progress->iteration, progress->energy);
     }
     return 0;
 }
 
 int main(int argc, char **argv) {
-    const double face_weight = 1.0, closeness_weight = 0.01;
+    const double face_weight = 1.0, closeness_weight = 0.001;
     const int one = 1;
     Mesh mesh;
     ShapeOpSolver *op;
@@ -139,7 +139,7 @@ int main(int argc, char **argv) {
         fail("faces", shapeop_lastError(op));
     }
 
-    /* Each point wants, a hundred times less, to stay where it is: without that a mesh may collapse. */
+    /* Each point wants, a thousand times less, to stay where it is: without that a mesh may collapse. */
     every_point = malloc((size_t)mesh.point_count * sizeof(int));
     if (every_point == NULL) {
         fail("mesh", "out of memory");
@@ -147,8 +147,8 @@ int main(int argc, char **argv) {
     for (i = 0; i < mesh.point_count; ++i) {
         every_point[i] = i;
     }
-    if (shapeop_addConstraints(op, "Closeness", every_point, mesh.point_count, &one, 1, &closeness_weight, 1, NULL, 0, 0,
-                               0, NULL) != SO_SUCCESS) {
+    if (shapeop_addConstraints(op, "Closeness", every_point, mesh.point_count, &one, 1, &closeness_weight, 1, NULL, 0,
+                               0, 0, NULL) != SO_SUCCESS) {
         fail("closeness", shapeop_lastError(op));
     }
     free(every_point);
@@ -161,7 +161,7 @@ int main(int argc, char **argv) {
     if (shapeop_defaultSolveOptions(&options) != SO_SUCCESS) {
         fail("options", shapeop_lastError(NULL));
     }
-    options.max_iterations = 200;
+    options.max_iterations = 500;
 
     before = worst_face(op, &mesh);
     if (shapeop_init(op) != 0 || shapeop_solveUntil(op, &options, show_progress, NULL, &report) != SO_SUCCESS) {

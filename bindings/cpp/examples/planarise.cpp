@@ -80,14 +80,14 @@ void planarise(const std::string &from, const std::string &to) {
     const double before = worst_planarity(mesh);
 
     shapeop::RecipeOptions recipe;
-    recipe.closeness = 0.01; // the faces weigh 1
+    recipe.closeness = 0.001; // the faces weigh 1
     shapeop::Solver solver;
     shapeop::SolveOptions options =
         solver.set_problem(shapeop::recipe("planarize", mesh.points, mesh.corners, mesh.counts, recipe));
-    options.max_iterations = 200;
+    options.max_iterations = 500;
 
     const shapeop::Report report = solver.solve_until(options, [](const shapeop::Progress &now) {
-        if (now.iteration % 10 == 0) {
+        if (now.iteration % 50 == 0) {
             std::cout << "iteration " << now.iteration << ": energy " << now.energy << '\n';
         }
         return true; // false would end the solve

@@ -8,8 +8,9 @@
 //     std::vector<double> points = solver.points();
 //
 // A refused call throws shapeop::Error, whose text names the argument, what was expected and what was found; it has
-// changed nothing. What each call does, its units and its limits, is said in shapeop.h beside the C function of the same
-// name: shapeop_addConstraints is Solver::add_constraints. Options and reports are the structs of shapeop.h, filled in.
+// changed nothing. What each call does, its units and its limits, is said in shapeop.h beside the C function of the
+// same name: shapeop_addConstraints is Solver::add_constraints. Options and reports are the structs of shapeop.h,
+// filled in.
 #ifndef SHAPEOP_HPP
 #define SHAPEOP_HPP
 

@@ -10,7 +10,15 @@ from draw import EDGE, Camera, Panel, page
 
 NUMBER = 7
 TITLE = "A box with three rigid sizes of faces"
-CLAIM = "Pulled apart, faces ripple from the short to the medium to the long target, and each matches the one that it took."
+CLAIM = (
+    "Pulled apart, faces ripple from the short to the medium to the long target, and each matches the one that it took."
+)
+NOTES = """\
+A box of 12 x 3 x 3 faces, closed at both ends, is pulled to twice its length in 160 time steps and held. It then has
+10 rings of long and 2 of medium faces, which are 23 long together, while its ends are 24 apart: each face is 1/12 too
+long, 1/24 at either end, and that is what is measured. When the ends are eased to 23, every face is congruent to its
+target.
+"""
 
 LENGTH, SIDE = 12, 3
 WIDTHS = {"short": 1.0, "medium": 1.5, "long": 2.0}
@@ -40,10 +48,30 @@ def build():
         "mesh": "meshes/fig07.obj",
         "constraints": [
             {"name": "faces", "type": "Rigid", "indices": "faceVertices", "weights": [200], "scalars": [targets]},
-            {"name": "fixed side", "type": "Closeness", "indices": [[int(i)] for i in fixed], "weights": [10000], "scalars": points[fixed].tolist()},
-            {"name": "pulled side", "type": "Closeness", "indices": [[int(i)] for i in pulled], "weights": [10000], "scalars": points[pulled].tolist()},
+            {
+                "name": "fixed side",
+                "type": "Closeness",
+                "indices": [[int(i)] for i in fixed],
+                "weights": [10000],
+                "scalars": points[fixed].tolist(),
+            },
+            {
+                "name": "pulled side",
+                "type": "Closeness",
+                "indices": [[int(i)] for i in pulled],
+                "weights": [10000],
+                "scalars": points[pulled].tolist(),
+            },
         ],
-        "settings": {"mode": "live", "iterations": 10, "mass": 1, "damping": 1, "time_step": 0.1, "gravity": [0, 0, 0], "dynamic": True},
+        "settings": {
+            "mode": "live",
+            "iterations": 10,
+            "mass": 1,
+            "damping": 1,
+            "time_step": 0.1,
+            "gravity": [0, 0, 0],
+            "dynamic": True,
+        },
         "stages": stages,
     }
     return {"figure": NUMBER, "title": TITLE, "models": [model]}, {"meshes/fig07.obj": (points, faces)}
@@ -56,7 +84,7 @@ def matches(box, points):
 
 
 def rings(box, points):
-    """How many rings of faces around the box, out of 12, are nearest to each target. The two closed ends are left out."""
+    """How many rings of faces around the box, of 12, are nearest to each target. The closed ends are left out."""
     is_end = np.array([np.ptp(box.points[face][:, 0]) == 0 for face in box.faces])
     return np.bincount(matches(box, points)[0][~is_end], minlength=3) / (4 * SIDE)
 
@@ -65,12 +93,22 @@ def measures(solved):
     box = solved["box"]
     half, held, rest = (box[stage] for stage in ("pulled by 50 %", "held", "at rest"))
     found = [Measure("rings with the short target, at the start", rings(box, box.points)[0], "of 12", least=12)]
-    found += [Measure("rings with the %s target, pulled by 50 %%" % name, count, "of 12") for name, count in zip(WIDTHS, rings(box, half))]
+    found += [
+        Measure("rings with the %s target, pulled by 50 %%" % name, count, "of 12")
+        for name, count in zip(WIDTHS, rings(box, half), strict=True)
+    ]
     found += [Measure("targets in use at once, pulled by 50 %", (rings(box, half) > 0).sum(), "of 3", least=3)]
     found += [
         Measure("rings with the long target, held at 100 %", rings(box, held)[2], "of 12", least=9),
-        Measure("largest distance of a corner to its face's target, held at 100 %", matches(box, held)[1].max(), "short edges", most=0.05),
-        Measure("the same, eased to the length of the targets taken", matches(box, rest)[1].max(), "short edges", most=0.001),
+        Measure(
+            "largest distance of a corner to its face's target, held at 100 %",
+            matches(box, held)[1].max(),
+            "short edges",
+            most=0.05,
+        ),
+        Measure(
+            "the same, eased to the length of the targets taken", matches(box, rest)[1].max(), "short edges", most=0.001
+        ),
     ]
     return found
 
@@ -92,12 +130,20 @@ def picture(solved, path):
         axes.stackplot(steps, shares.T, colors=list(COLORS.values()), linewidth=0)
         axes.set(xlim=(0, steps[-1]), ylim=(0, 12), xlabel="time step", ylabel="rings of faces")
         axes.set_yticks([0, 4, 8, 12])
-        for at, name in ((4 * PULL_STEPS, "held"), (4 * PULL_STEPS + HOLD_STEPS, "eased"), (5 * PULL_STEPS + HOLD_STEPS, "at rest")):
+        for at, name in (
+            (4 * PULL_STEPS, "held"),
+            (4 * PULL_STEPS + HOLD_STEPS, "eased"),
+            (5 * PULL_STEPS + HOLD_STEPS, "at rest"),
+        ):
             axes.axvline(at, color=EDGE, linewidth=0.6, linestyle=":")
             axes.text(at + 3, 11, name, fontsize=7.5, va="top", color="white")
         axes.legend(
-            handles=[Patch(color=COLORS[name], label="%s: %g × 1" % (name, width)) for name, width in WIDTHS.items()],
-            loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=8, frameon=False,
+            handles=[Patch(color=COLORS[name], label="%s: %g by 1" % (name, width)) for name, width in WIDTHS.items()],
+            loc="lower center",
+            bbox_to_anchor=(0.5, 1.0),
+            ncols=3,
+            fontsize=8,
+            frameon=False,
         )
 
     page(path, [[panel] for panel in panels], Camera(-82, 20), width=8.0, plot=(1.5, plot))

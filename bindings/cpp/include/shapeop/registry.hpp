@@ -5,12 +5,15 @@
 #include "error.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace shapeop {
 
 /// The version of the library, such as "0.1.0".
-inline std::string version() { return shapeop_version(); }
+inline std::string version() {
+    return shapeop_version();
+}
 
 /// A constraint type: name, help, limits and unit are fields of shapeop_constraint_type. The texts stay valid.
 struct ConstraintType : shapeop_constraint_type {

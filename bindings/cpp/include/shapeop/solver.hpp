@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -68,9 +69,8 @@ public:
             detail::refuse(nullptr);
         }
         if (shapeop_abiVersion() != SHAPEOP_ABI_VERSION) {
-            throw Error(SO_INVALID_INPUT, "the library has ABI version " + std::to_string(shapeop_abiVersion()) +
-                                              ", this program was compiled for " +
-                                              std::to_string(SHAPEOP_ABI_VERSION));
+            throw Error(std::nullopt, "the library has ABI version " + std::to_string(shapeop_abiVersion()) +
+                                          ", this program was compiled for " + std::to_string(SHAPEOP_ABI_VERSION));
         }
     }
 
@@ -293,8 +293,7 @@ private:
 
     static double *components(Numbers force) {
         if (force.size() != 3) {
-            throw Error(SO_INVALID_ARGUMENT_LENGTH,
-                        "force: expected 3 numbers, found " + std::to_string(force.size()));
+            throw Error(SO_INVALID_ARGUMENT_LENGTH, "force: expected 3 numbers, found " + std::to_string(force.size()));
         }
         // The C functions do not change them.
         return const_cast<double *>(force.data());

@@ -22,9 +22,9 @@ public:
     Span() = default;
     Span(T *first, std::size_t size) : first_(first), size_(size) {}
 
-    template <class Range, class = std::enable_if_t<
-                               std::is_convertible_v<decltype(std::data(std::declval<Range &>())), T *> &&
-                               !std::is_same_v<std::decay_t<Range>, Span>>>
+    template <class Range,
+              class = std::enable_if_t<std::is_convertible_v<decltype(std::data(std::declval<Range &>())), T *> &&
+                                       !std::is_same_v<std::decay_t<Range>, Span>>>
     Span(Range &&range) : first_(std::data(range)), size_(static_cast<std::size_t>(std::size(range))) {}
 
     // The numbers live as long as the call that they are an argument of.
