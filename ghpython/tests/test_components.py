@@ -74,12 +74,13 @@ class Folders(unittest.TestCase):
             bootstrap, end, call = rest.partition('restart Rhino" % error\n    )\n')
             self.assertTrue(end)
             parts.append(bootstrap + end)
-            found = re.match(r"^\n([\w, ]+) = host\.run\(\s*ghenv, (\d+), components\.\w+(, [\w, ]+)?\s*\)\n$", call)
+            found = re.match(r"^\n([\w, ]+) = host\.run\(([\w.,\s]+)\)\n$", call)
             self.assertTrue(found, (name, call))
-            outputs, count, inputs = found.groups()
-            self.assertEqual(outputs.split(", "), [p["name"] for p in ports(name, "output")])
-            self.assertEqual(int(count), len(ports(name, "output")))
-            self.assertEqual((inputs or ", ")[2:].split(", "), [p["name"] for p in ports(name, "input")])
+            outputs, arguments = [[a.strip() for a in group.strip(", \n").split(",")] for group in found.groups()]
+            self.assertEqual(outputs, [p["name"] for p in ports(name, "output")])
+            self.assertEqual(arguments[:2], ["ghenv", str(len(outputs))])
+            self.assertTrue(arguments[2].startswith("components."), arguments[2])
+            self.assertEqual(arguments[3:], [p["name"] for p in ports(name, "input")])
         self.assertEqual(len(set(parts)), 1)
 
     def test_icons_are_24_pixels_square_and_no_two_alike(self):
