@@ -65,7 +65,9 @@ class Mistakes(unittest.TestCase):
             for component in (twin, solver):
                 component.run(ConstraintSigs=tree(self.good), **given)
             self.canvas.document._scheduled = []
-            self.refused(solver, text, ConstraintSigs=tree(self.good + signatures), **given)
+            # The signature before the wrong one is new, too: it must not stay behind.
+            new = signature(self.canvas, "Closeness", [[1]], [100.0], [[5.0, 5.0, 5.0]])
+            self.refused(solver, text, ConstraintSigs=tree(new + signatures + self.good), **given)
             results = [c.run(ConstraintSigs=tree(self.good), **given) for c in (twin, solver)]
             self.canvas.document._scheduled = []
             self.assertEqual(solver.errors(), [])

@@ -249,6 +249,19 @@ class Live(Case):
         x = self.where(self.tick(made, Points=tree(points([0, 0, 0])), Settings=live))
         self.assertAlmostEqual(x[2], -9.81 * 0.1**2, 9)
 
+    def test_move_is_the_mean_over_the_points_per_iteration_or_per_time_step(self):
+        # One of two points jumps 3 to its target at once, and stays there for the other 3 iterations.
+        live = self.canvas.add("ShapeOpSettingsLive").run
+        made = signature(self.canvas, "Closeness", [[0], [1]], [1.0], [[0.0, 0.0, 3.0], [1.0, 0.0, 0.0]])
+        given = dict(Points=tree(points([0, 0, 0, 1, 0, 0])))
+        result = self.tick(made, Settings=live(Iterations=4, Dynamic=False, Reset=False)["Settings"][0], **given)
+        self.assertAlmostEqual(result["Move"], 3.0 / 2 / 4, 12)
+        # A step of a free fall: g t^2.
+        fall = live(Iterations=4, UnaryVector=Vector3d(0, 0, -9.81), Reset=False)["Settings"][0]
+        loose = signature(self.canvas, "Closeness", [[0], [1]], [1e-12])
+        result = self.tick(loose, Settings=fall, Points=tree(points([0, 0, 0, 1, 0, 0])), Accelerate=False)
+        self.assertAlmostEqual(result["Move"], 9.81 * 0.1**2, 9)
+
     def test_handles_drag_points_while_it_runs(self):
         component = self.canvas.add("ShapeOpHandles")
         made, all_points = self.planes() + self.held(0.01), points(self.given)
