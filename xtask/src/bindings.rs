@@ -8,16 +8,33 @@ use crate::suites::{Places, Suite};
 use crate::{dist, setup, shell};
 
 /// What the Python tests install, in `pip install`'s words.
-const REQUIREMENTS: [&str; 5] = [
+const REQUIREMENTS: [&str; 7] = [
     "--requirement",
     "bindings/python/requirements-test.txt",
     "--requirement",
     "examples/paper/requirements.txt",
+    "--requirement",
+    "ghpython/tests/requirements.txt",
     "dotnetcore2==3.1.23",
 ];
 
 /// The tests of each binding beside the three problems.
-pub const SUITES: [Suite; 8] = [
+pub const SUITES: [Suite; 11] = [
+    Suite {
+        name: "Grasshopper components under CPython 3",
+        environment: &[("SHAPEOP_LIBRARY", "{dist}/lib/libshapeop.so")],
+        steps: &[&["{python}", "-m", "pytest", "-q", "-p", "no:cacheprovider", "{source}/ghpython/tests"]],
+    },
+    Suite {
+        name: "Grasshopper components under CPython 2.7",
+        environment: &[("SHAPEOP_LIBRARY", "{dist}/lib/libshapeop.so"), ("PYTHONDONTWRITEBYTECODE", "1")],
+        steps: &[&["{python27}", "-m", "unittest", "discover", "-s", "{source}/ghpython/tests"]],
+    },
+    Suite {
+        name: "Grasshopper components under Jython",
+        environment: &[("PYTHONDONTWRITEBYTECODE", "1")],
+        steps: &[&["jython", "-m", "unittest", "discover", "-s", "{source}/ghpython/tests"]],
+    },
     Suite {
         name: "a CMake project against a moved installation",
         environment: &[],
@@ -113,6 +130,9 @@ pub fn set_up(profile: &str) -> Result<Places> {
     places.set("dist", folder);
     places.set("source", &root);
     places.set("python", python);
+    if let Some(python27) = setup::python("2.7") {
+        places.set("python27", python27);
+    }
     Ok(places)
 }
 

@@ -85,7 +85,7 @@ impl Suite {
             if !shell::can_start(program) {
                 return Ok(Err(LeftOut(format!("{program} was not found"))));
             }
-            printed += &shell::output(&mut command).context(self.name)?;
+            printed += &shell::said(&mut command).context(self.name)?.concat();
         }
         Ok(Ok(printed))
     }

@@ -56,7 +56,7 @@ fn run_suites(places: &Places, left_out: &Path) -> Result<Vec<String>> {
         match outcome {
             Err(LeftOut(why)) => lines.push(format!("{}: {why}", suite.name)),
             Ok(printed) => {
-                let last = printed.lines().rev().find(|line| line.contains("passed") || line.starts_with("OK"));
+                let last = printed.lines().rev().find(|line| line.contains(" passed") || line.starts_with("Ran "));
                 println!("  {}", last.or(printed.lines().last()).unwrap_or("done"));
             }
         }
