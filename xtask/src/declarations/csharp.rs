@@ -114,9 +114,11 @@ fn pascal(name: &str) -> String {
     words.map(|word| word[..1].to_uppercase() + &word[1..]).collect()
 }
 
+/// As a name of an argument; where that is a word of the language, it is marked as a name.
 fn camel(name: &str) -> String {
     let pascal = pascal(name);
-    pascal[..1].to_lowercase() + &pascal[1..]
+    let camel = pascal[..1].to_lowercase() + &pascal[1..];
+    if ["out", "ref", "in", "params"].contains(&camel.as_str()) { format!("@{camel}") } else { camel }
 }
 
 /// The length of what all names begin with, up to a whole word.
