@@ -42,3 +42,16 @@ pub fn run(command: &mut Command) -> Result<()> {
     }
     Ok(())
 }
+
+/// True if `program` is a file, or one that is found on the path.
+pub fn can_start(program: &str) -> bool {
+    let path = Path::new(program);
+    if path.components().count() > 1 {
+        return path.is_file();
+    }
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&folders).any(|folder| {
+        let file = folder.join(program);
+        file.is_file() || file.with_extension("exe").is_file() || file.with_extension("cmd").is_file()
+    })
+}

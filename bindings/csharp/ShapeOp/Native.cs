@@ -199,6 +199,9 @@ namespace ShapeOp
         internal static extern IntPtr shapeop_lastError(SolverHandle op);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_lastErrorCode(SolverHandle op);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern IntPtr shapeop_errorText(int error);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
@@ -330,13 +333,13 @@ namespace ShapeOp
         internal static extern int shapeop_constraintTypeCount();
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        internal static extern ErrorCode shapeop_constraintType(int index, ref shapeop_constraint_type @out);
+        internal static extern ErrorCode shapeop_constraintType(int index, ref shapeop_constraint_type out);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern ErrorCode shapeop_constraintScalar(
             int index,
             int scalarIndex,
-            ref shapeop_constraint_scalar @out);
+            ref shapeop_constraint_scalar out);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern IntPtr shapeop_constraintIndexName(int index, int indexPosition);
@@ -353,10 +356,10 @@ namespace ShapeOp
             ref shapeop_solve_report report);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        internal static extern ErrorCode shapeop_energy(SolverHandle op, double[] @out);
+        internal static extern ErrorCode shapeop_energy(SolverHandle op, double[] out);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        internal static extern ErrorCode shapeop_getViolations(SolverHandle op, double[] @out, int nb);
+        internal static extern ErrorCode shapeop_getViolations(SolverHandle op, double[] out, int nb);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern ErrorCode shapeop_setProblem(
@@ -396,7 +399,7 @@ namespace ShapeOp
             int nbFaceIndices,
             int[] counts,
             int nbCounts,
-            double[] @out,
+            double[] out,
             int nb);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
