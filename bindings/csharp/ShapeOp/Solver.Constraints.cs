@@ -61,10 +61,6 @@ namespace ShapeOp
             string type, int[] indices, int[] counts, int number, double[] weights, double[] scalars, int setCount)
         {
             var ids = new int[number];
-            if (number == 0)
-            {
-                return ids;
-            }
             byte[] name = Text.ToLibrary(type, nameof(type));
             handle.Check(
                 Native.shapeop_addConstraints(
