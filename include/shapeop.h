@@ -15,8 +15,8 @@
  *
  * Errors. A refused call changes nothing, and answers with an error code, with 1 (shapeop_init, shapeop_initDynamic,
  * shapeop_solve), with -1 (ids, counts, truths) or with null (shapeop_create, shapeop_constraintIndexName). In all
- * cases, functions without a result included, shapeop_lastError then says why, and its text is empty after a call
- * that succeeded. Numbers that are not finite are refused where they enter, and none is ever handed out.
+ * cases, functions without a result included, shapeop_lastError then says why and shapeop_lastErrorCode gives the
+ * code; after a call that succeeded the text is empty and the code SO_SUCCESS. Numbers that are not finite are refused where they enter, and none is ever handed out.
  *
  * Threads. Any thread may use any solver. A call on a solver that another call is using does not wait: it is refused
  * as busy. Different solvers can be used at the same time. From inside its own progress callback a solver can be read
@@ -491,14 +491,21 @@ SHAPEOP_API int shapeop_abiVersion(void);
 
 /**
  * Why the last call on `op` was refused, in words: the argument, what was expected, what was found. Empty if it
- * succeeded: every call but this, `shapeop_version`, `shapeop_abiVersion`, `shapeop_errorText` and `shapeop_delete` of
- * null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread
+ * succeeded: every call but this, `shapeop_lastErrorCode`, `shapeop_version`, `shapeop_abiVersion`, `shapeop_errorText`
+ * and `shapeop_delete` of null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread
  * only, and the success of another thread's call does not hide it. If `op` is no solver, the text is about the calling
  * thread's last call of all.
  *
  * The text is the calling thread's own copy, valid until that thread's next call of this function.
  */
-SHAPEOP_API const char *shapeop_lastError(struct ShapeOpSolver *op);
+SHAPEOP_API
+const char *shapeop_lastError(struct ShapeOpSolver *op);
+
+/**
+ * The error code of the call that `shapeop_lastError` tells of, for the functions that do not answer with one;
+ * `SO_SUCCESS` if that call succeeded. Like `shapeop_lastError` it replaces no message.
+ */
+SHAPEOP_API enum shapeop_err shapeop_lastErrorCode(struct ShapeOpSolver *op);
 
 /**
  * What an error code means, in words; for a number that is none, it says so. Valid as long as the library is loaded.

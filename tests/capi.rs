@@ -504,7 +504,7 @@ fn messages_belong_to_the_last_call_and_can_be_read_by_another_thread() {
 }
 
 #[test]
-fn setters_without_a_result_leave_a_message() {
+fn setters_without_a_result_leave_a_message_and_its_code() {
     let abi = warped();
     assert_eq!(shapeop_initDynamic(abi.0, 1.0, 1.0, 0.5), 0);
     for (set, name) in [
@@ -514,9 +514,10 @@ fn setters_without_a_result_leave_a_message() {
         for value in [-1.0, f64::NAN, f64::INFINITY] {
             set(abi.0, value);
             assert!(abi.message().starts_with(name), "{}", abi.message());
+            assert_eq!(shapeop_lastErrorCode(abi.0), SO_INVALID_VALUE);
         }
         set(abi.0, 0.25);
-        assert_eq!(abi.message(), "");
+        assert_eq!((abi.message().as_str(), shapeop_lastErrorCode(abi.0)), ("", SO_SUCCESS));
     }
 }
 

@@ -86,8 +86,8 @@ pub extern "C" fn shapeop_abiVersion() -> c_int {
 }
 
 /// Why the last call on `op` was refused, in words: the argument, what was expected, what was found. Empty if it
-/// succeeded: every call but this, `shapeop_version`, `shapeop_abiVersion`, `shapeop_errorText` and `shapeop_delete` of
-/// null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread
+/// succeeded: every call but this, `shapeop_lastErrorCode`, `shapeop_version`, `shapeop_abiVersion`, `shapeop_errorText`
+/// and `shapeop_delete` of null replaces the message. A call that was refused because `op` was busy leaves its message with its own thread
 /// only, and the success of another thread's call does not hide it. If `op` is no solver, the text is about the calling
 /// thread's last call of all.
 ///
@@ -95,6 +95,14 @@ pub extern "C" fn shapeop_abiVersion() -> c_int {
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_lastError(op: *mut ShapeOpSolver) -> *const c_char {
     std::panic::catch_unwind(|| messages::show_last(Handle::new(op))).unwrap_or(c"".as_ptr())
+}
+
+/// The error code of the call that `shapeop_lastError` tells of, for the functions that do not answer with one;
+/// `SO_SUCCESS` if that call succeeded. Like `shapeop_lastError` it replaces no message.
+#[unsafe(no_mangle)]
+pub extern "C" fn shapeop_lastErrorCode(op: *mut ShapeOpSolver) -> shapeop_err {
+    let status = std::panic::catch_unwind(|| messages::last_status(Handle::new(op)));
+    status.unwrap_or(Some(Status::Internal)).map_or(shapeop_err::SO_SUCCESS, shapeop_err::from)
 }
 
 /// What an error code means, in words; for a number that is none, it says so. Valid as long as the library is loaded.

@@ -12,13 +12,15 @@ use std::sync::{Mutex, PoisonError};
 use std::thread::LocalKey;
 
 use super::handles::{self, Handle};
-use crate::error::Error;
+use crate::error::{Error, Status};
 
 /// The message of a call; empty if it succeeded.
 #[derive(Clone, Default)]
 pub(super) struct Message {
     /// Later calls have greater numbers.
     order: u64,
+    /// Why it was refused, if it was.
+    status: Option<Status>,
     text: String,
 }
 
@@ -26,7 +28,7 @@ impl Message {
     fn new(error: Option<&Error>) -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(1);
         let text = error.map(Error::to_string).unwrap_or_default();
-        Self { order: NEXT.fetch_add(1, Ordering::Relaxed), text }
+        Self { order: NEXT.fetch_add(1, Ordering::Relaxed), status: error.map(Error::status), text }
     }
 }
 
@@ -61,18 +63,23 @@ pub(super) fn keep_note(handle: Handle, note: &Error) {
 
 /// Why the last call on `handle` was refused; this thread's last call if `handle` names no solver. Another thread's
 /// success does not hide a refusal of this one.
-fn last(handle: Handle) -> String {
+fn last(handle: Handle) -> Message {
     let of_thread = LAST.try_with(|last| last.borrow().clone());
     let (own_handle, of_thread) = of_thread.unwrap_or((Handle::NONE, Message::default()));
-    let Ok(slot) = handles::find(handle) else { return of_thread.text };
+    let Ok(slot) = handles::find(handle) else { return of_thread };
     let of_solver = slot.message.lock().unwrap_or_else(PoisonError::into_inner);
     let is_own_newer = of_solver.text.is_empty() || of_thread.order > of_solver.order;
-    if own_handle == handle && is_own_newer { of_thread.text } else { of_solver.text.clone() }
+    if own_handle == handle && is_own_newer { of_thread } else { of_solver.clone() }
+}
+
+/// The status of [`last`]; `None` if that call succeeded.
+pub(super) fn last_status(handle: Handle) -> Option<Status> {
+    last(handle).status
 }
 
 /// [`last`] as C text that stays valid until this thread's next call.
 pub(super) fn show_last(handle: Handle) -> *const c_char {
-    show(&SHOWN, last(handle).replace('\0', " ")).unwrap_or(c"".as_ptr())
+    show(&SHOWN, last(handle).text.replace('\0', " ")).unwrap_or(c"".as_ptr())
 }
 
 /// The JSON form of a problem as C text that stays valid until this thread's next call; JSON holds no zero.

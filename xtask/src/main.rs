@@ -1,12 +1,16 @@
 //! `cargo xtask`: set-up and checks. No product code.
 
 mod bench;
+mod bindings;
 mod declarations;
 mod dist;
 mod docs;
 mod header;
+mod languages;
+mod setup;
 mod shell;
 mod show;
+mod suites;
 mod test;
 
 use std::path::PathBuf;
@@ -24,9 +28,9 @@ struct Arguments {
 enum Command {
     /// Time the six problems beside compas-shapeop; write docs/benchmarks.md. CI=true: fail if compas-shapeop is missing.
     Bench(bench::Options),
-    /// Build the library and lay out headers and libraries for C hosts.
+    /// Build the library and lay out an installation for C and C++ hosts, CMake and pkg-config.
     Dist {
-        /// The folder to fill: lib/, include/, compat/.
+        /// The folder to fill: lib/, include/, share/, and compat/ for hosts of libShapeOp.
         folder: PathBuf,
         /// The Cargo profile to build with.
         #[arg(long, default_value = "release")]

@@ -22,15 +22,20 @@ fn line(command: &Command) -> String {
     words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
 
-/// Runs a program; returns what it printed; fails, with what it printed, if it does.
+/// Runs a program; returns what it printed; fails, with what it said, if it does.
 pub fn output(command: &mut Command) -> Result<String> {
+    said(command).map(|[printed, _]| printed)
+}
+
+/// Runs a program; returns what it printed and what it said beside that; fails, with both, if it does.
+pub fn said(command: &mut Command) -> Result<[String; 2]> {
     let line = line(command);
     let output = command.output().with_context(|| format!("`{line}` could not be started"))?;
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     if !output.status.success() {
-        bail!("`{line}` failed: {}\n{text}\n{}", output.status, String::from_utf8_lossy(&output.stderr));
+        bail!("`{line}` failed: {}\n{}\n{}", output.status, said[0], said[1]);
     }
-    Ok(text)
+    Ok(said)
 }
 
 /// Runs a program; fails if it does.
@@ -41,4 +46,17 @@ pub fn run(command: &mut Command) -> Result<()> {
         bail!("`{line}` failed: {status}");
     }
     Ok(())
+}
+
+/// True if `program` is a file, or one that is found on the path.
+pub fn can_start(program: &str) -> bool {
+    let path = Path::new(program);
+    if path.components().count() > 1 {
+        return path.is_file();
+    }
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&folders).any(|folder| {
+        let file = folder.join(program);
+        file.is_file() || file.with_extension("exe").is_file() || file.with_extension("cmd").is_file()
+    })
 }

@@ -1,58 +1,42 @@
 //! `cargo xtask test`.
 
 use std::fs;
-use std::process::{Command, Stdio};
-use std::thread::sleep;
-use std::time::Duration;
+use std::path::Path;
+use std::time::Instant;
 
 use anyhow::{Result, bail};
 
-use crate::shell;
+use crate::languages::{self, TOLERANCE};
+use crate::suites::{LeftOut, Places};
+use crate::{bindings, setup, shell};
 
-/// A program that tests run, and the Debian package that brings it.
-struct Tool {
-    /// Any of these will do.
-    names: &'static [&'static str],
-    package: &'static str,
-}
-
-/// What the tests need beside Rust. They leave out what is not there, and say so.
-const TOOLS: [Tool; 4] = [
-    Tool { names: &["cc", "gcc", "clang"], package: "gcc" },
-    Tool { names: &["c++", "g++", "clang++"], package: "g++" },
-    Tool { names: &["python3", "python"], package: "python3" },
-    Tool { names: &["readelf"], package: "binutils" },
-];
-
-/// Tries of a download before giving up, with pauses of 5, 10, ... seconds between them.
-const DOWNLOAD_TRIES: u64 = 4;
+/// The profile that `cargo test` builds with, so that the bindings' tests take the library as it is then.
+const PROFILE: &str = "dev";
 
 /// Sets up what the tests need, runs all of them, and says what was left out. With `CI=true` nothing may be.
 pub fn run() -> Result<()> {
-    let is_ci = std::env::var("CI").as_deref() == Ok("true");
-    let missing: Vec<&Tool> = TOOLS.iter().filter(|tool| !tool.is_there()).collect();
-    if !missing.is_empty() {
-        install(&missing.iter().map(|tool| tool.package).collect::<Vec<_>>());
-    }
-    let still_missing: Vec<&str> = missing.iter().filter(|tool| !tool.is_there()).map(|tool| tool.package).collect();
-    if is_ci && !still_missing.is_empty() {
-        bail!("CI leaves nothing out, but these packages are missing: {}", still_missing.join(", "));
-    }
+    setup::install_tools()?;
 
     // Tests write what they leave out into this file, one line each.
     let left_out = shell::root().join("target/left-out.txt");
     fs::create_dir_all(shell::root().join("target"))?;
     fs::write(&left_out, "")?;
     let cargo_test = |arguments: &[&str]| {
-        println!("cargo test {}", arguments.join(" "));
-        shell::run(shell::cargo().arg("test").args(arguments).env("SHAPEOP_LEFT_OUT", &left_out))
+        let line = format!("cargo test {}", arguments.join(" "));
+        timed(&line, || shell::run(shell::cargo().arg("test").args(arguments).env("SHAPEOP_LEFT_OUT", &left_out)))
     };
     cargo_test(&["--workspace"])?;
     cargo_test(&["--workspace", "--features", "shapeop/schema", "--test", "schema"])?;
 
+    let places = timed("set-up of the bindings' tests", || bindings::set_up(PROFILE))?;
     let mut lines: Vec<String> = fs::read_to_string(&left_out)?.lines().map(str::to_owned).collect();
+    lines.extend(run_suites(&places, &left_out)?);
+    lines.extend(run_languages(&places)?);
     lines.sort();
     lines.dedup();
+    if setup::is_ci() && !lines.is_empty() {
+        bail!("CI leaves nothing out, but: {}", lines.join("; "));
+    }
     if lines.is_empty() {
         println!("All tests passed; nothing was left out.");
     } else {
@@ -62,52 +46,44 @@ pub fn run() -> Result<()> {
     Ok(())
 }
 
-impl Tool {
-    fn is_there(&self) -> bool {
-        let runs = |name: &&str| quiet(name, &["--version"]);
-        self.names.iter().any(runs)
-    }
-}
-
-fn quiet(program: &str, arguments: &[&str]) -> bool {
-    let mut command = Command::new(program);
-    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    command.status().is_ok_and(|status| status.success())
-}
-
-/// Installs Debian packages where that is possible: as root, with apt-get. What it cannot do, the caller finds missing.
-pub fn install(packages: &[&str]) {
-    let wanted = packages.join(" ");
-    if !quiet("apt-get", &["--version"]) || !is_root() {
-        println!("Missing: {wanted}. Install them yourself: this needs root and apt-get.");
-        return;
-    }
-    println!("Installing {wanted}");
-    let apt = |arguments: &[&str]| {
-        let mut command = Command::new("apt-get");
-        command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");
-        shell::run(&mut command).is_ok()
-    };
-    for try_number in 1..=DOWNLOAD_TRIES {
-        let arguments = [&["install", "--yes", "--no-install-recommends"], packages].concat();
-        if apt(&["update"]) && apt(&arguments) {
-            return;
-        }
-        if try_number < DOWNLOAD_TRIES {
-            println!("Try {try_number} of {DOWNLOAD_TRIES} failed; waiting");
-            sleep(Duration::from_secs(5 * try_number));
+/// The tests of every binding; returns what was left out.
+fn run_suites(places: &Places, left_out: &Path) -> Result<Vec<String>> {
+    let mut lines = Vec::new();
+    let mut places = places.clone();
+    places.set("leftout", left_out);
+    for suite in &bindings::SUITES {
+        let outcome = timed(suite.name, || suite.run(&places))?;
+        match outcome {
+            Err(LeftOut(why)) => lines.push(format!("{}: {why}", suite.name)),
+            Ok(printed) => {
+                let last = printed.lines().rev().find(|line| line.contains(" passed") || line.starts_with("Ran "));
+                println!("  {}", last.or(printed.lines().last()).unwrap_or("done"));
+            }
         }
     }
+    Ok(lines)
 }
 
-#[cfg(unix)]
-fn is_root() -> bool {
-    let output = Command::new("id").arg("-u").output();
-    output.is_ok_and(|output| output.stdout.trim_ascii() == b"0")
+/// The three problems in every language; returns what was left out.
+fn run_languages(places: &Places) -> Result<Vec<String>> {
+    let rows = timed("the three problems in every language", || languages::run(places, PROFILE))?;
+    let mut lines = Vec::new();
+    for row in rows {
+        match row.differences {
+            Err(LeftOut(why)) => lines.push(format!("three problems in {}: {why}", row.name)),
+            Ok(differences) if differences.iter().any(|difference| *difference > TOLERANCE) => {
+                bail!("{} differs by {differences:?} of the model's size: at most {TOLERANCE} passes", row.name)
+            }
+            Ok(_) => {}
+        }
+    }
+    Ok(lines)
 }
 
-#[cfg(not(unix))]
-fn is_root() -> bool {
-    // There is no apt-get either.
-    false
+fn timed<T>(name: &str, run: impl FnOnce() -> Result<T>) -> Result<T> {
+    println!("-- {name}");
+    let started = Instant::now();
+    let result = run()?;
+    println!("-- {name}: {:.0} s", started.elapsed().as_secs_f64());
+    Ok(result)
 }

@@ -199,6 +199,9 @@ namespace ShapeOp
         internal static extern IntPtr shapeop_lastError(SolverHandle op);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_lastErrorCode(SolverHandle op);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern IntPtr shapeop_errorText(int error);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]

@@ -142,6 +142,7 @@ FUNCTIONS = {
     "shapeop_version": (c_char_p, []),
     "shapeop_abiVersion": (c_int, []),
     "shapeop_lastError": (c_char_p, [c_void_p]),
+    "shapeop_lastErrorCode": (c_int, [c_void_p]),
     "shapeop_errorText": (c_char_p, [c_int]),
     "shapeop_create": (c_void_p, []),
     "shapeop_delete": (None, [c_void_p]),

@@ -1,0 +1,84 @@
+"""shapeop: shapes that meet geometric constraints.
+
+Points, and constraints on them: these faces planar, these edges of one length, this point here. The solver finds the
+shape that meets them as well as possible.
+
+Recipes make a problem from a mesh and solve it. The library names them (:func:`recipe_names`), and each is a function
+here, such as ``shapeop.planarize(mesh)``.
+"""
+
+from ._library import (
+    LIBRARY_PATH,
+    ArgumentError,
+    ArgumentTypeError,
+    BusyError,
+    ClosedError,
+    Error,
+    ErrorCode,
+    IndexRangeError,
+    InvalidValueError,
+    LoadError,
+    NotInitialisedError,
+    UnboundedError,
+    UnknownIdError,
+    version,
+)
+from .problem import Constraint, Edit, Force, Problem, Settings
+from .recipes import FairnessKind, Recipe, Result, measure_faces, measure_names, recipe, recipe_names
+from .registry import ConstraintType, Projection, Scalar, constraint_types
+from .report import Acceleration, LinearSolver, Outcome, Progress, Report
+from .solver import Solver
+
+__version__ = version()
+
+__all__ = [
+    "LIBRARY_PATH",
+    "Acceleration",
+    "ArgumentError",
+    "ArgumentTypeError",
+    "BusyError",
+    "ClosedError",
+    "Constraint",
+    "ConstraintType",
+    "Edit",
+    "Error",
+    "ErrorCode",
+    "FairnessKind",
+    "Force",
+    "IndexRangeError",
+    "InvalidValueError",
+    "LinearSolver",
+    "LoadError",
+    "NotInitialisedError",
+    "Outcome",
+    "Problem",
+    "Progress",
+    "Projection",
+    "Recipe",
+    "Report",
+    "Result",
+    "Scalar",
+    "Settings",
+    "Solver",
+    "UnboundedError",
+    "UnknownIdError",
+    "constraint_types",
+    "measure_faces",
+    "measure_names",
+    "recipe",
+    "recipe_names",
+    "version",
+]
+
+
+def __getattr__(name: str) -> Recipe:
+    """The recipes, under the names that the library has for them."""
+    if name in recipe_names():
+        found = Recipe(name)
+        globals()[name] = found
+        return found
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *recipe_names()})

@@ -1,0 +1,119 @@
+"""What a solve is told and what it answers."""
+
+from __future__ import annotations
+
+import dataclasses
+from enum import IntEnum
+from typing import NamedTuple
+
+from . import _abi
+
+
+class Outcome(IntEnum):
+    """Why a solve ended."""
+
+    CONVERGED = _abi.SO_OUTCOME_CONVERGED
+    """The largest move fell below the tolerance."""
+    ITERATION_LIMIT = _abi.SO_OUTCOME_ITERATION_LIMIT
+    """The iterations were used up."""
+    TIME_BUDGET = _abi.SO_OUTCOME_TIME_BUDGET
+    """The time was used up."""
+    CANCELLED = _abi.SO_OUTCOME_CANCELLED
+    """The progress function said so."""
+    STALLED = _abi.SO_OUTCOME_STALLED
+    """Neither the energy nor the largest move fell any more."""
+    UNBOUNDED = _abi.SO_OUTCOME_UNBOUNDED
+    """A force acts along a motion that no constraint resists; the points did not move."""
+
+
+class Acceleration(IntEnum):
+    """How iterations are accelerated."""
+
+    NONE = _abi.SO_ACCELERATION_NONE
+    """Not at all."""
+    ANDERSON = _abi.SO_ACCELERATION_ANDERSON
+    """Safeguarded Anderson acceleration."""
+    QUASI_NEWTON = _abi.SO_ACCELERATION_QUASI_NEWTON
+    """L-BFGS with the matrix of the global step as initial Hessian, and a line search."""
+    AUTOMATIC = _abi.SO_ACCELERATION_AUTOMATIC
+    """The default: none in ``solve``, quasi-Newton in ``solve_until``."""
+
+
+class LinearSolver(IntEnum):
+    """How the linear system of an iteration is solved."""
+
+    AUTOMATIC = _abi.SO_LINEAR_SOLVER_AUTOMATIC
+    """The default: a factor if it fits in memory, else conjugate gradients."""
+    DIRECT = _abi.SO_LINEAR_SOLVER_DIRECT
+    """A Cholesky factor, computed once and used in every iteration."""
+    CONJUGATE_GRADIENTS = _abi.SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS
+    """Conjugate gradients, preconditioned by multigrid."""
+
+
+class Progress(NamedTuple):
+    """What a progress function is told after every iteration."""
+
+    iteration: int
+    """Iterations made so far, from 1."""
+    energy: float
+    """The energy at the current points."""
+    largest_move: float
+    """The largest move of a point in this iteration, relative to the bounding-box diagonal."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Report:
+    """What a solve found."""
+
+    outcome: Outcome
+    """Why it ended."""
+    iterations: int
+    """Iterations made."""
+    unconstrained_count: int
+    """Points that no constraint of a weight above 0 holds."""
+    energy_before: float
+    """The energy at the points that the iterations started from."""
+    energy_after: float
+    """The energy at the points that were reached."""
+    largest_move: float
+    """The largest move of a point in the last iteration, relative to the bounding-box diagonal."""
+    analysis_seconds: float
+    """Seconds spent on ordering and symbolic analysis when the system in use was made."""
+    factorisation_seconds: float
+    """Seconds spent on the factorisation when the system in use was made."""
+    local_seconds: float
+    """Seconds spent on projections."""
+    global_seconds: float
+    """Seconds spent on right-hand sides, linear solves and acceleration."""
+    evaluations: int
+    """Local steps at points that were tried, kept or not."""
+    rejected_energy_rose: int
+    """Evaluations whose energy was higher than before, or not as much lower as the line search asks for."""
+    rejected_not_finite: int
+    """Evaluations whose energy was not finite."""
+    rejected_ill_conditioned: int
+    """Iterations in which acceleration left out a part of its history as ill-conditioned."""
+    rejected_not_descent: int
+    """Directions of acceleration that were not tried, as the energy would rise along them."""
+    rejected_line_search: int
+    """Directions of acceleration that were given up, as no step along them was accepted."""
+    ordering_count: int
+    """Orderings made since the solver was created."""
+    factorisation_count: int
+    """Numeric factorisations made since the solver was created."""
+    linear_solver: LinearSolver
+    """How linear systems were solved."""
+    linear_iterations: int
+    """Iterations of conjugate gradients; 0 with a factor."""
+    message: str = ""
+    """For ``Outcome.UNBOUNDED``: which point or component the force acts on; else empty."""
+
+
+def report_of(struct: _abi.shapeop_solve_report, message: str) -> Report:
+    """The library's report as a :class:`Report`."""
+    names = [field.name for field in dataclasses.fields(Report) if field.name != "message"]
+    values = {name: getattr(struct, name) for name in names}
+    values["outcome"] = Outcome(values["outcome"])
+    values["linear_solver"] = LinearSolver(values["linear_solver"])
+    is_unbounded = values["outcome"] is Outcome.UNBOUNDED
+    return Report(**values, message=message if is_unbounded else "")
