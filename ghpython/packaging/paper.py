@@ -34,8 +34,9 @@ def build(
     name = "fig%02d" % spec["figure"]
     definition = Definition(name + ".ghx", "%s (figure %d of the ShapeOp paper)" % (spec["title"], spec["figure"]), host)
     top = 0.0
+    meshes: Dict[str, Node] = {}  # models of one figure may share a mesh
     for model in spec["models"]:
-        top = _Model(definition, model, folder, components, parts, spec["title"], top).bottom + 2 * _MARGIN
+        top = _Model(definition, model, folder, meshes, components, parts, spec["title"], top).bottom + 2 * _MARGIN
     return definition
 
 
@@ -70,23 +71,27 @@ def rows_text(rows: Sequence[Sequence[float]]) -> str:
 
 class _Model:
     def __init__(
-        self, definition: Definition, model: Dict[str, Any], folder: Path, components: Dict[str, Component],
-        parts: Dict[str, Component], title: str, top: float,
+        self, definition: Definition, model: Dict[str, Any], folder: Path, meshes: Dict[str, Node],
+        components: Dict[str, Component], parts: Dict[str, Component], title: str, top: float,
     ) -> None:  # fmt: skip
         self.definition, self.model, self.components, self.parts = definition, model, components, parts
         self.row = top
         self.nodes: List[Node] = []
         stages = [scalars_of_stages(model, c) for c in model["constraints"]]
         self.has_stages = any(len(s) > 1 for s in stages)
-        note = self.panel("note", self._note(title), (_TEXTS, self.row), (620, 24 + 18 * (3 + len(model["stages"]))))
-        self.row += 24 + 18 * (3 + len(model["stages"])) + _MARGIN
+        note = self._note(title)
+        height = 24 + 18 * (1 + note.count("\n"))
+        self.panel("note", note, (_TEXTS, self.row), (620, height))
+        self.row += height + _MARGIN
         if self.has_stages:
             self.stage = self.slider("stage", "Stage", len(model["stages"]), 0, len(model["stages"]), 3, _TEXTS)
-        text = (folder / model["mesh"]).read_text("utf-8")
-        mesh_text = self.panel("mesh text", text, (_TEXTS, self.row), (240, 120), "Mesh")
-        self.mesh = self.part("ReadMesh", "mesh", _READERS)
-        self.definition.wire(mesh_text, self.mesh, "Text")
-        self.row += _ROW
+        if model["mesh"] not in meshes:
+            text = (folder / model["mesh"]).read_text("utf-8")
+            mesh_text = self.panel("mesh text", text, (_TEXTS, self.row), (240, 120), "Mesh")
+            meshes[model["mesh"]] = self.part("ReadMesh", "mesh", _READERS)
+            self.definition.wire(mesh_text, meshes[model["mesh"]], "Text")
+            self.row += _ROW
+        self.mesh = meshes[model["mesh"]]
         solver = self.component("ConstraintSolver", "solver", _SOLVER)
         for constraint, scalars in zip(model["constraints"], stages):
             signature = self._constraint(constraint, scalars)
@@ -162,11 +167,9 @@ class _Model:
         else:
             self._numbers(name + " weights", "Weights", rows_text([weights]), False, signature, "Weights")
         if scalars:
-            text = ("\n# \n").join(rows_text(lists) for lists in scalars)
-            if len(scalars) > 1:
-                names = ["the input"] + [stage["name"] for stage in self.model["stages"]]
-                parts = [rows_text(lists) for lists in scalars]
-                text = parts[0] + "".join("\n# %s\n%s" % pair for pair in zip(names[1:], parts[1:]))
+            text = rows_text(scalars[0])
+            for stage, lists in zip(self.model["stages"], scalars[1:]):
+                text += "\n# %s\n%s" % (stage["name"], rows_text(lists))
             self._numbers(name + " scalars", "Scalars", text, len(scalars) > 1, signature, "Scalars")
         self.row = max(self.row, top + _ROW)
         return signature

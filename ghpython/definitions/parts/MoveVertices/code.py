@@ -1,6 +1,12 @@
 """The mesh with its vertices at other points."""
-Moved = Mesh.DuplicateMesh() if Mesh and Points and len(Points) == Mesh.Vertices.Count else None
-if Moved:
-    for index, point in enumerate(Points):
-        Moved.Vertices.SetVertex(index, point.X, point.Y, point.Z)
-    Moved.Normals.ComputeNormals()
+import Rhino.Geometry as rg
+
+Moved = None
+if Mesh and Points:
+    Moved = rg.Mesh()
+    for point in Points:
+        Moved.Vertices.Add(point.X, point.Y, point.Z)
+    for index in range(Mesh.Faces.Count):
+        face = Mesh.Faces[index]
+        corners = (face.A, face.B, face.C, face.D) if face.IsQuad else (face.A, face.B, face.C)
+        Moved.Faces.AddFace(*corners)

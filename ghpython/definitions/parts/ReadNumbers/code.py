@@ -4,22 +4,13 @@ Lines that begin with # divide the text into sections, one for each stage, the f
 stages the numbers go evenly from one section's to the next one's."""
 from Grasshopper import DataTree
 from Grasshopper.Kernel.Data import GH_Path
-from System import Object
-
-
-def number(word):
-    try:
-        return int(word)
-    except ValueError:
-        return float(word)
-
 
 sections = [[]]
 for line in (Text or "").splitlines():
     if line.startswith("#"):
         sections.append([])
     elif line.strip():
-        sections[-1].append([number(word) for word in line.split()])
+        sections[-1].append([float(word) for word in line.split()])
 
 stage = min(max(Stage or 0, 0), len(sections) - 1)
 before = int(stage)
@@ -31,7 +22,7 @@ if fraction > 0:
         raise ValueError("sections %d and %d have not as many numbers in each line" % (before, before + 1))
     rows = [[a + (b - a) * fraction for a, b in zip(*pair)] for pair in zip(rows, following)]
 
-Numbers = DataTree[Object]()
+Numbers = DataTree[float]()
 for index, row in enumerate(rows):
     for value in row:
         Numbers.Add(value, GH_Path(index))
