@@ -1,29 +1,69 @@
 //! The tests of the bindings, and what they are set up with.
 
+use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use anyhow::Result;
 
-use crate::suites::{Places, Suite};
+use crate::suites::{Places, Step, Suite};
 use crate::{dist, setup, shell};
 
 /// What the Python tests install, in `pip install`'s words.
-const REQUIREMENTS: [&str; 7] = [
+const REQUIREMENTS: [&str; 5] = [
     "--requirement",
     "bindings/python/requirements-test.txt",
     "--requirement",
     "examples/paper/requirements.txt",
-    "--requirement",
-    "ghpython/tests/requirements.txt",
     "dotnetcore2==3.1.23",
 ];
 
+/// What the Grasshopper tests install: apart, as COMPAS takes the stubs of Rhino for Rhino.
+const GRASSHOPPER_REQUIREMENTS: [&str; 6] = [
+    "--requirement",
+    "ghpython/tests/requirements.txt",
+    "--requirement",
+    "ghpython/packaging/requirements-test.txt",
+    "--requirement",
+    "examples/paper/requirements.txt",
+];
+
+/// Packages that carry user objects of other authors, which ours are compared with.
+const PUBLIC_FILES: [&str; 3] = ["compas==2.15.1", "compas-fab==2.0.1", "ladybug-grasshopper==1.72.5"];
+
+/// Compiles the tests of the .NET binding, warnings refused.
+const CSHARP_TESTS: Step = &[
+    "mcs",
+    "-langversion:7.2",
+    "-warn:4",
+    "-warnaserror",
+    "-out:{work}/Tests.exe",
+    "-recurse:{source}/bindings/csharp/ShapeOp/*.cs",
+    "{source}/tests/csharp/Tests.cs",
+    "{source}/tests/csharp/Refusals.cs",
+];
+
 /// The tests of each binding beside the three problems.
-pub const SUITES: [Suite; 11] = [
+pub const SUITES: [Suite; 14] = [
+    Suite {
+        name: "C# on Mono: truths and refusals",
+        environment: &[("LD_LIBRARY_PATH", "{dist}/lib")],
+        steps: &[CSHARP_TESTS, &["mono", "{work}/Tests.exe"]],
+    },
+    Suite {
+        name: "C# on CoreCLR: truths and refusals",
+        environment: &[("LD_LIBRARY_PATH", "{dist}/lib")],
+        steps: &[CSHARP_TESTS, &["{python}", "{source}/tests/csharp/coreclr.py", "{work}/Tests.exe"]],
+    },
+    Suite {
+        name: "Grasshopper files",
+        environment: &[("SHAPEOP_LIBRARY", "{dist}/lib/libshapeop.so"), ("SHAPEOP_GH_FILES", "{ghfiles}")],
+        steps: &[&["{ghpython}", "-m", "pytest", "-q", "-p", "no:cacheprovider", "{source}/ghpython/packaging/tests"]],
+    },
     Suite {
         name: "Grasshopper components under CPython 3",
         environment: &[("SHAPEOP_LIBRARY", "{dist}/lib/libshapeop.so")],
-        steps: &[&["{python}", "-m", "pytest", "-q", "-p", "no:cacheprovider", "{source}/ghpython/tests"]],
+        steps: &[&["{ghpython}", "-m", "pytest", "-q", "-p", "no:cacheprovider", "{source}/ghpython/tests"]],
     },
     Suite {
         name: "Grasshopper components under CPython 2.7",
@@ -121,14 +161,17 @@ pub fn set_up(profile: &str) -> Result<Places> {
     let mut places = Places::default();
     let folder = root.join("target/dist");
     dist::run(&folder, profile)?;
-    let python = python(&root.join("target/python"))?;
+    let python = environment(&root.join("target/python"), &REQUIREMENTS)?;
     // The wheel with the library that the other tests use.
-    let mut install = std::process::Command::new(&python);
+    let mut install = Command::new(&python);
     install.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--force-reinstall", "--no-deps"]);
     install.arg(root.join("bindings/python")).env("SHAPEOP_LIBRARY_TO_BUNDLE", dist::library(&folder));
     shell::run(&mut install)?;
     places.set("dist", folder);
     places.set("source", &root);
+    let grasshopper = environment(&root.join("target/ghpython"), &GRASSHOPPER_REQUIREMENTS)?;
+    places.set("ghfiles", public_files(&grasshopper, root.join("target/ghfiles"))?);
+    places.set("ghpython", grasshopper);
     places.set("python", python);
     if let Some(python27) = setup::python("2.7") {
         places.set("python27", python27);
@@ -136,8 +179,20 @@ pub fn set_up(profile: &str) -> Result<Places> {
     Ok(places)
 }
 
-/// The environment of the tests, of the newest CPython for which all of the requirements exist.
-fn python(folder: &Path) -> Result<PathBuf> {
+/// An environment of the newest CPython for which all of the requirements exist.
+fn environment(folder: &Path, requirements: &[&str]) -> Result<PathBuf> {
     let found = ["3.12", "3.11", "3.10"].iter().find_map(|version| setup::python(version));
-    setup::environment(&found.map_or_else(setup::any_python, Ok)?, folder, &REQUIREMENTS.map(str::to_owned))
+    let requirements: Vec<String> = requirements.iter().map(|&each| each.to_owned()).collect();
+    setup::environment(&found.map_or_else(setup::any_python, Ok)?, folder, &requirements)
+}
+
+/// The folder with the wheels of the public files; downloaded once.
+fn public_files(python: &Path, folder: PathBuf) -> Result<PathBuf> {
+    let wheels = || fs::read_dir(&folder).map_or(0, |entries| entries.flatten().count());
+    if wheels() < PUBLIC_FILES.len() {
+        let arguments = ["download", "--no-deps", "--only-binary", ":all:", "--dest"].map(str::to_owned);
+        let packages = PUBLIC_FILES.map(str::to_owned);
+        setup::pip(python, &[&arguments[..], &[folder.to_string_lossy().into_owned()], &packages].concat())?;
+    }
+    Ok(folder)
 }

@@ -7,12 +7,12 @@ namespace ShapeOp
     /// </summary>
     public sealed class ShapeOpException : Exception
     {
-        /// <summary>Why, as a code; null if the function of the library answers without one.</summary>
-        public ErrorCode? Code { get; }
+        /// <summary>Why, as a code.</summary>
+        public ErrorCode Code { get; }
 
-        internal ShapeOpException(ErrorCode? code, string message)
+        internal ShapeOpException(ErrorCode code, string message)
             // Without a message: another thread used the solver between the call and the question why.
-            : base(message ?? Library.Call(() => Text.FromLibrary(Native.shapeop_errorText((int)(code ?? ErrorCode.Internal)))))
+            : base(message.Length > 0 ? message : Library.Call(() => Text.FromLibrary(Native.shapeop_errorText((int)code))))
         {
             Code = code;
         }

@@ -161,7 +161,7 @@ namespace ShapeOp
         public void EditVertexForce(int id, int point, double x, double y, double z)
         {
             Native.shapeop_editVertexForce(Usable, id, new[] { x, y, z }, point);
-            handle.CheckMessage();
+            handle.CheckLast();
         }
 
         /// <summary>Removes a force. Its id is never given out again.</summary>

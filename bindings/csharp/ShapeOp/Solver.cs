@@ -70,7 +70,7 @@ namespace ShapeOp
             set
             {
                 Native.shapeop_setPoints(Usable, value, Flat.PointCount(value, "points"));
-                handle.CheckMessage();
+                handle.CheckLast();
             }
         }
 
@@ -79,7 +79,7 @@ namespace ShapeOp
         public void GetPoints(double[] points)
         {
             Native.shapeop_getPoints(Usable, points, Flat.PointCount(points, nameof(points)));
-            handle.CheckMessage();
+            handle.CheckLast();
         }
 
         /// <summary>The number of points.</summary>
@@ -102,7 +102,7 @@ namespace ShapeOp
         public void Init()
         {
             Native.shapeop_init(Usable);
-            handle.CheckMessage();
+            handle.CheckLast();
         }
 
         /// <summary>Prepares for dynamic solving from the current points with zero velocities.</summary>
@@ -112,7 +112,7 @@ namespace ShapeOp
         public void InitDynamic(double masses, double damping, double timeStep)
         {
             Native.shapeop_initDynamic(Usable, masses, damping, timeStep);
-            handle.CheckMessage();
+            handle.CheckLast();
         }
 
         /// <summary>
@@ -122,14 +122,14 @@ namespace ShapeOp
         public void SetTimeStep(double timeStep)
         {
             Native.shapeop_setTimeStep(Usable, timeStep);
-            handle.CheckMessage();
+            handle.CheckLast();
         }
 
         /// <summary>Changes the damping of the following steps. Before initialisation it has no effect.</summary>
         public void SetDamping(double damping)
         {
             Native.shapeop_setDamping(Usable, damping);
-            handle.CheckMessage();
+            handle.CheckLast();
         }
 
         /// <summary>
@@ -162,7 +162,7 @@ namespace ShapeOp
         public void Solve(int iterations)
         {
             Native.shapeop_solve(Usable, Refusal.Unsigned(iterations, nameof(iterations)));
-            handle.CheckMessage();
+            handle.CheckLast();
         }
 
         /// <summary>
@@ -208,7 +208,7 @@ namespace ShapeOp
             GC.KeepAlive(callback);
             failure?.Throw();
             handle.Check(code);
-            string message = report.outcome == Outcome.Unbounded ? handle.Message() : null;
+            string message = report.outcome == Outcome.Unbounded ? Text.FromLibrary(Native.shapeop_lastError(handle)) : null;
             return new Report(report, message);
         }
 

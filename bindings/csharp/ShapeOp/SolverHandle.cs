@@ -35,41 +35,37 @@ namespace ShapeOp
                 GC.WaitForPendingFinalizers();
                 created = Native.shapeop_create();
             }
-            if (created.IsInvalid) throw new ShapeOpException(null, None.Message());
+            if (created.IsInvalid) throw None.Refusal();
             return created;
         }
 
-        /// <summary>Why the last call was refused; null if it was not.</summary>
-        internal string Message()
-        {
-            string message = Text.FromLibrary(Native.shapeop_lastError(this));
-            return message.Length == 0 ? null : message;
-        }
+        /// <summary>What the last call was refused for.</summary>
+        internal ShapeOpException Refusal() =>
+            new ShapeOpException(Native.shapeop_lastErrorCode(this), Text.FromLibrary(Native.shapeop_lastError(this)));
 
         /// <summary>For functions that answer with an error code.</summary>
         internal void Check(ErrorCode code)
         {
-            if (code != ErrorCode.Success) throw new ShapeOpException(code, Message());
+            if (code != ErrorCode.Success) throw new ShapeOpException(code, Text.FromLibrary(Native.shapeop_lastError(this)));
         }
 
-        /// <summary>For functions whose only sign of a refusal is the message.</summary>
-        internal void CheckMessage()
+        /// <summary>For functions without a result.</summary>
+        internal void CheckLast()
         {
-            string message = Message();
-            if (message != null) throw new ShapeOpException(null, message);
+            if (Native.shapeop_lastErrorCode(this) != ErrorCode.Success) throw Refusal();
         }
 
         /// <summary>For functions that answer with a count, an id or a truth, or with -1.</summary>
         internal int CheckNumber(int number)
         {
-            if (number < 0) throw new ShapeOpException(null, Message());
+            if (number < 0) throw Refusal();
             return number;
         }
 
         /// <summary>For functions without a solver that answer with a text, or with null.</summary>
         internal static string CheckText(IntPtr text)
         {
-            if (text == IntPtr.Zero) throw new ShapeOpException(null, None.Message());
+            if (text == IntPtr.Zero) throw None.Refusal();
             return Text.FromLibrary(text);
         }
     }

@@ -70,14 +70,22 @@ class Mesh(object):
     def __init__(self):
         self.Vertices = MeshVertexList(self)
         self.Faces = MeshFaceList(self)
+        self._kept = {}
 
     @property
     def TopologyVertices(self):
-        return MeshTopologyVertexList(self)
+        return self._keep(MeshTopologyVertexList)
 
     @property
     def TopologyEdges(self):
-        return MeshTopologyEdgeList(self)
+        return self._keep(MeshTopologyEdgeList)
+
+    def _keep(self, kind):
+        """Made anew only where vertices or faces were added: nothing else changes a mesh here."""
+        counts = (self.Vertices.Count, self.Faces.Count)
+        if self._kept.get(kind, (None, None))[0] != counts:
+            self._kept[kind] = (counts, kind(self))
+        return self._kept[kind][1]
 
     def GetNakedEdgePointStatus(self):
         naked = set(v for edge in self.TopologyEdges._naked() for v in edge)
