@@ -2,8 +2,8 @@
 
     peer.py MODEL ITERATIONS [POINTS_FILE]
 
-It calls the compiled module, not the Python layer above it, and times only initialising and solving: what is measured is
-the C++ core of libShapeOp. Dynamic models run dynamically, with gravity.
+It calls the compiled module, not the Python layer above it, and times only initialising and solving: what is measured
+is the C++ core of libShapeOp. Dynamic models run dynamically, with gravity.
 """
 
 import json
@@ -18,7 +18,10 @@ from compas_shapeop._shapeop import SolverWrapper
 def read(path):
     with open(path, "rb") as file:
         header = json.loads(file.readline())
-        take = lambda dtype, count: numpy.frombuffer(file.read(numpy.dtype(dtype).itemsize * count), dtype)
+
+        def take(dtype, count):
+            return numpy.frombuffer(file.read(numpy.dtype(dtype).itemsize * count), dtype)
+
         points = take("<f8", 3 * header["points"]).reshape(-1, 3)
         for group in header["groups"]:
             group["indices"] = take("<u4", group["indices"]).reshape(-1, group["arity"]).tolist()

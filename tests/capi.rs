@@ -210,6 +210,11 @@ fn many_constraints_are_added_in_one_call_or_none() {
         (Many { ids: &far, ..base() }, SO_INDEX_OUT_OF_RANGE, "constraint 10 (\"Plane\"): indices[3]: 10 is out of"),
         (Many { ids: &negative, ..base() }, SO_INDEX_OUT_OF_RANGE, "constraint 10 (\"Plane\"): indices[1]: -3 is out"),
         (Many { counts: &[2], ..base() }, SO_INVALID_ARGUMENT_LENGTH, "counts[0]"),
+        (
+            Many { ids: &quads[..2], counts: &[2], ..base() },
+            SO_INVALID_ARGUMENT_LENGTH,
+            "constraint 9 (\"Plane\"): indices: expected at least",
+        ),
         (Many { counts: &[0], ..base() }, SO_INVALID_ARGUMENT_LENGTH, "counts[0]"),
         (Many { counts: &[-4], ..base() }, SO_INVALID_ARGUMENT_LENGTH, "counts[0]"),
         (Many { counts: &[5], ..base() }, SO_INVALID_ARGUMENT_LENGTH, "nb_ids: expected a multiple of 5"),

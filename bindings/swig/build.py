@@ -75,8 +75,14 @@ def main():
     library = os.path.join(work, ("_%s.so" if language == "python" else "lib%s.so") % module)
     lib = os.path.join(prefix, "lib")
     includes = ["-I" + folder for folder in [os.path.join(prefix, "include")] + include_folders(language)]
-    run(os.environ.get("CC", "cc"), "-O2", "-shared", "-fPIC", compat, *includes + [
-        wrapper, "-L" + lib, "-lshapeop", "-Wl,-rpath,$ORIGIN:" + lib, "-o", library])
+    run(
+        os.environ.get("CC", "cc"),
+        "-O2",
+        "-shared",
+        "-fPIC",
+        compat,
+        *includes + [wrapper, "-L" + lib, "-lshapeop", "-Wl,-rpath,$ORIGIN:" + lib, "-o", library],
+    )
 
     if language == "python":
         shutil.copy(os.path.join(sources, module + ".py"), work)
@@ -85,8 +91,12 @@ def main():
         run("javac", "-d", classes, *sorted(glob.glob(os.path.join(sources, "*.java"))))
         run("jar", "cf", os.path.join(work, module + ".jar"), "-C", classes, ".")
     else:
-        run("mcs", "-target:library", "-out:" + os.path.join(work, module + ".dll"),
-            *sorted(glob.glob(os.path.join(sources, "*.cs"))))
+        run(
+            "mcs",
+            "-target:library",
+            "-out:" + os.path.join(work, module + ".dll"),
+            *sorted(glob.glob(os.path.join(sources, "*.cs"))),
+        )
 
 
 main()

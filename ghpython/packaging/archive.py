@@ -9,6 +9,7 @@ Binary form (`.gh`, `.ghuser`): the tree as bytes, compressed with raw DEFLATE. 
 `Chunk` and `Item` keep the order and every bit of what was read: `encode(decode(b)) == b`. The same tree as text
 (`.ghx`) is in `xml_form.py`.
 """
+
 from __future__ import annotations
 
 import struct

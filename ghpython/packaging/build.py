@@ -1,4 +1,5 @@
 """Builds all that Grasshopper gets: user objects, the definitions of the paper's examples, Yak packages."""
+
 from __future__ import annotations
 
 import argparse

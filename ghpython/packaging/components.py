@@ -2,6 +2,7 @@
 
 The layout of the folder is that of COMPAS's componentizer. The state is what a `.ghuser` holds and what a definition
 holds for each component; it differs between the GhPython component (Rhino 7) and the script component (Rhino 8)."""
+
 from __future__ import annotations
 
 import base64
@@ -216,7 +217,9 @@ class _Place:
         name = self.get(key, str, default)
         if name not in names:
             where = "%s.%s" % (self.place, key)
-            raise ComponentError("%s: %s is %r, expected one of %s" % (self.path, where, name, ", ".join(sorted(names))))
+            raise ComponentError(
+                "%s: %s is %r, expected one of %s" % (self.path, where, name, ", ".join(sorted(names)))
+            )
         return name
 
     def guid(self, key: str) -> uuid.UUID:

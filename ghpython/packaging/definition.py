@@ -1,8 +1,9 @@
-"""Writes Grasshopper definitions: components, panels, sliders, toggles, buttons and groups on a canvas, and their wires.
+"""Writes Grasshopper definitions: components, panels, sliders, toggles, buttons and groups on a canvas, and wires.
 
 Every id comes from the definition's name and the object's key, so that each build gives the same bits. A wire is stored
 at its target: the ids of its sources, in order. A source is an output of a component, or an object that is a parameter
 itself (slider, panel, toggle, button)."""
+
 from __future__ import annotations
 
 import uuid
@@ -98,9 +99,7 @@ class Definition:
             properties.set(name, archive.BOOL, value)
         return node
 
-    def slider(
-        self, key: str, nickname: str, value: float, low: float, high: float, digits: int, at: Position
-    ) -> Node:
+    def slider(self, key: str, nickname: str, value: float, low: float, high: float, digits: int, at: Position) -> Node:
         """A number slider; with no digits it gives whole numbers."""
         if not low <= value <= high or round(value, digits) != value:
             raise ValueError("slider %r: %r is not in [%r, %r] with %d digits" % (key, value, low, high, digits))
@@ -140,7 +139,10 @@ class Definition:
         container.set("Name", archive.STRING, "Unit Z")
         container.set("NickName", archive.STRING, "Z")
         container.add(_attributes(at, (94, 28), (at[0] + 40, at[1] + 14)))
-        sides = (("param_input", "Factor", "F", "Unit multiplication"), ("param_output", "Unit vector", "V", "World {z} vector"))
+        sides = (
+            ("param_input", "Factor", "F", "Unit multiplication"),
+            ("param_output", "Unit vector", "V", "World {z} vector"),
+        )
         for side, name, nickname, description in sides:
             chunk = container.add(Chunk(side, index=0))
             chunk.set("Description", archive.STRING, description)
@@ -223,9 +225,7 @@ class Definition:
         self._objects.append(item)
         return node, item.add(Chunk("Container"))
 
-    def _parameter(
-        self, key: str, kind: uuid.UUID, name: str, nickname: str, description: str
-    ) -> Tuple[Node, Chunk]:
+    def _parameter(self, key: str, kind: uuid.UUID, name: str, nickname: str, description: str) -> Tuple[Node, Chunk]:
         node, container = self._object(key, kind, name)
         container.set("Description", archive.STRING, description)
         container.set("InstanceGuid", archive.GUID, node.guid)

@@ -1,6 +1,7 @@
 """Prints a Grasshopper file (`.gh`, `.ghuser`, `.ghx`) as text: `python dump.py FILE`.
 
 One line per item: its name, its type, its value. Archives inside the file are opened."""
+
 from __future__ import annotations
 
 import argparse

@@ -3,12 +3,13 @@
 A definition holds the models of one figure, one below the other. Each model: the mesh as text in a panel, the
 constraints with their numbers in panels, settings on sliders, the solver, the mesh at the solved points. The numbers
 that a spec edits over time stand in one panel, a section for each stage, and a slider chooses the stage."""
+
 from __future__ import annotations
 
 import json
 import math
 from pathlib import Path
-from typing import Any, Dict, List, Sequence, Tuple
+from typing import Any, Dict, List, Sequence
 
 from components import Component, Host
 from definition import Definition, Node, Position
@@ -30,9 +31,11 @@ def read_spec(path: Path) -> Dict[str, Any]:
 def build(
     spec: Dict[str, Any], folder: Path, components: Dict[str, Component], parts: Dict[str, Component], host: Host
 ) -> Definition:
-    """The definition of a figure. `folder` is where its meshes are, `parts` are the components of the examples alone."""
+    """The definition of a figure. `folder` holds its meshes, `parts` are the components of the examples alone."""
     name = "fig%02d" % spec["figure"]
-    definition = Definition(name + ".ghx", "%s (figure %d of the ShapeOp paper)" % (spec["title"], spec["figure"]), host)
+    definition = Definition(
+        name + ".ghx", "%s (figure %d of the ShapeOp paper)" % (spec["title"], spec["figure"]), host
+    )
     top = 0.0
     meshes: Dict[str, Node] = {}  # models of one figure may share a mesh
     for model in spec["models"]:
@@ -48,7 +51,9 @@ def scalars_of_stages(model: Dict[str, Any], constraint: Dict[str, Any]) -> List
     for stage in model["stages"]:
         edits = [e for e in stage.get("edits", ()) if e["constraints"] == constraint["name"]]
         if edits and not found:
-            raise SpecError("model %r edits %r, which states no scalars to begin with" % (model["name"], constraint["name"]))
+            raise SpecError(
+                "model %r edits %r, which states no scalars to begin with" % (model["name"], constraint["name"])
+            )
         if found:
             found.append(edits[-1]["scalars"] if edits else found[-1])
         edited = edited or bool(edits)
@@ -158,7 +163,9 @@ class _Model:
             definition.wire((indexer, "PointIndices"), signature, "PointIndices")
             self.row += 30
         else:
-            self._numbers(name + " indices", "Indices", rows_text(constraint["indices"]), False, signature, "PointIndices")
+            self._numbers(
+                name + " indices", "Indices", rows_text(constraint["indices"]), False, signature, "PointIndices"
+            )
         weights = constraint["weights"]
         if len(weights) == 1:
             panel = self.panel(name + " weight", repr(weights[0]), (_TEXTS, self.row), (240, 24), "Weight")
@@ -193,7 +200,12 @@ class _Model:
             return node
         node = self.component("SettingsLive", "settings", _INDEXERS)
         live = dict({"mass": 1, "damping": 1, "time_step": 0.1, "gravity": [0, 0, 0], "dynamic": False}, **settings)
-        for key, name in (("iterations", "Iterations"), ("mass", "Mass"), ("damping", "Damping"), ("time_step", "TimeStep")):
+        for key, name in (
+            ("iterations", "Iterations"),
+            ("mass", "Mass"),
+            ("damping", "Damping"),
+            ("time_step", "TimeStep"),
+        ):
             definition.wire(self._number_slider(name, live[key], 0 if key == "iterations" else 3), node, name)
         if live["gravity"][:2] != [0, 0]:
             raise SpecError("model %r: gravity %s is not along z" % (self.model["name"], live["gravity"]))

@@ -1,9 +1,12 @@
 """The text form of Grasshopper's archives (`.ghx`): the tree of `archive.py` as XML.
 
-    <Archive name="Root"> <items count="1"> <item name="..." index="0" type_name="gh_int32" type_code="3">7</item> </items>
-                          <chunks count="1"> <chunk name="..." index="0"> ... </chunk> </chunks> </Archive>
+    <Archive name="Root">
+      <items count="1"> <item name="..." index="0" type_name="gh_int32" type_code="3">7</item> </items>
+      <chunks count="1"> <chunk name="..." index="0"> ... </chunk> </chunks>
+    </Archive>
 
 `parse(text(root))` is `root`, bit by bit. Numbers are written in the shortest form that reads back the same."""
+
 from __future__ import annotations
 
 import base64
@@ -17,7 +20,7 @@ from xml.sax.saxutils import escape, quoteattr
 import archive
 from archive import ArchiveError, Chunk, Item
 
-# The elements that the parts of a value have. Of the types left out (points of four, intervals of two) no text was seen.
+# The elements that the parts of a value have. Of the types left out (4D points, 2D intervals) no text was seen.
 _PARTS = {
     30: ("X", "Y"),
     31: ("X", "Y"),

@@ -6,8 +6,10 @@
     shapeop_gh/shapeop.dll               the native library, which the module loads by its absolute path
     definitions/*.ghx misc/              the examples; licences and what to read
 
-Rhino unpacks it into `.../packages/8.0/ShapeOp/0.1.0/`. The file name carries the distribution tag: `shapeop-0.1.0-rh8_0-win.yak` is for Rhino 8.0 and later on Windows. `any`
-stands for both platforms. Zip entries are sorted and dated alike: the same input gives the same bits."""
+Rhino unpacks it into `.../packages/8.0/ShapeOp/0.1.0/`. The file name carries the distribution tag:
+`shapeop-0.1.0-rh8_0-win.yak` is for Rhino 8.0 and later on Windows. `any` stands for both platforms. Zip entries are
+sorted and dated alike: the same input gives the same bits."""
+
 from __future__ import annotations
 
 import io
@@ -91,8 +93,8 @@ def usable(host: Host, libraries: Dict[Platform, Path]) -> Dict[Platform, Path]:
 
 
 def file_name(version: str, host: Host, platforms: Iterable[Platform]) -> str:
-    """The name of a package. One without a library for Rhino's systems is tagged `linux`, which no package server takes:
-    it is for tests."""
+    """The name of a package. One without a library for Rhino's systems is tagged `linux`, which no package server
+    takes: it is for tests."""
     tags = sorted({p.tag for p in platforms if p.tag})
     platform = "linux" if not tags else tags[0] if len(tags) == 1 else "any"
     return "%s-%s-%s-%s.yak" % (NAME.lower(), version, _HOSTS[host.name][0], platform)
@@ -149,6 +151,6 @@ def files_of(
     files["%s/_abi.py" % MODULE] = abi.read_bytes()
     files.update({"%s/%s" % (MODULE, p.file_name): path.read_bytes() for p, path in libraries.items()})
     files.update({"definitions/" + name: data for name, data in definitions.items()})
-    for name in ("LICENSE-MIT", "LICENSE-APACHE", "CHANGELOG.md"):
+    for name in ("LICENSE-MIT", "LICENSE-APACHE", "LICENSE-THIRD-PARTY", "CHANGELOG.md"):
         files["misc/" + name] = (root / name).read_bytes()
     return files

@@ -333,7 +333,10 @@ fn index_counts(type_name: &str, index_count: usize, counts: &[c_int]) -> Result
     let info = TypeIndex::named(type_name)?.info();
     if let &[count] = counts {
         let count = length("counts[0]", count)?;
-        info.check_index_count(count).map_err(|error| error.at("counts[0]"))?;
+        // Of a single constraint it is the number of its indices that is wrong, as the solver says.
+        if count == 0 || count != index_count {
+            info.check_index_count(count).map_err(|error| error.at("counts[0]"))?;
+        }
         if !index_count.is_multiple_of(count) {
             let reason = format!("expected a multiple of {count}, the indices of each; found {index_count}");
             return Err(Error::new(Status::InvalidArgumentLength, reason).at("nb_ids"));

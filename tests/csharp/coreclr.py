@@ -1,7 +1,7 @@
-"""Runs a .NET program on the CoreCLR of the PyPI package dotnetcore2 (3.1): python coreclr.py PROGRAM.exe [ARGUMENT ...]
+"""Runs a .NET program on the CoreCLR of the PyPI package dotnetcore2 (3.1): coreclr.py PROGRAM.exe [ARGUMENT ...]
 
-The package has the runtime only, without an SDK; it runs the same file as Mono. The package itself is not imported: that
-would look for libraries to download. Globalization is invariant, as ICU is not there.
+The package has the runtime only, without an SDK; it runs the same file as Mono. The package itself is not imported:
+that would look for libraries to download. Globalization is invariant, as ICU is not there.
 """
 
 import importlib.util

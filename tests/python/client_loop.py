@@ -1,7 +1,8 @@
 """The published client's loop: every editable constraint is edited again at every tick, then solve, then getPoints.
 
-Unchanged edits must cost nothing: the report's seconds of the factorisation are those of the system in use, so they stay
-the same number as long as it is not made anew. Usage: client_loop.py; ctypes declares nothing, as in undeclared.py.
+Unchanged edits must cost nothing: the report's seconds of the factorisation are those of the system in use, so they
+stay the same number as long as it is not made anew. Usage: client_loop.py;
+ctypes declares nothing, as in undeclared.py.
 """
 
 import ctypes

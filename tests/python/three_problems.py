@@ -1,4 +1,4 @@
-"""The three problems of tests/languages/README.md, with the Python package. Usage: three_problems.py MESH.obj FOLDER."""
+"""The three problems of tests/languages/README.md, with the Python package: three_problems.py MESH.obj FOLDER"""
 
 import sys
 from pathlib import Path

@@ -34,7 +34,7 @@ def corners(height, offset):
 def main():
     # Several solvers at once: each keeps its own points, constraints and ids.
     solvers = []
-    for n in range(40):
+    for _ in range(40):
         op = lib.shapeop_create()
         assert 0 < op < 2**31, op
         solvers.append(op)

@@ -10,12 +10,14 @@ use crate::suites::{Places, Step, Suite};
 use crate::{dist, setup, shell};
 
 /// What the Python tests install, in `pip install`'s words.
-const REQUIREMENTS: [&str; 5] = [
+const REQUIREMENTS: [&str; 7] = [
     "--requirement",
     "bindings/python/requirements-test.txt",
     "--requirement",
     "examples/paper/requirements.txt",
     "dotnetcore2==3.1.23",
+    "mypy==2.4.1",
+    "ruff==0.17.6",
 ];
 
 /// What the Grasshopper tests install: apart, as COMPAS takes the stubs of Rhino for Rhino.
@@ -39,12 +41,28 @@ const CSHARP_TESTS: Step = &[
     "-warnaserror",
     "-out:{work}/Tests.exe",
     "-recurse:{source}/bindings/csharp/ShapeOp/*.cs",
-    "{source}/tests/csharp/Tests.cs",
-    "{source}/tests/csharp/Refusals.cs",
+    "-recurse:{source}/tests/csharp/Tests/*.cs",
 ];
 
 /// The tests of each binding beside the three problems.
-pub const SUITES: [Suite; 14] = [
+pub const SUITES: [Suite; 17] = [
+    Suite {
+        name: "format, lints and types of the Python sources",
+        environment: &[],
+        steps: &[
+            &["{python}", "-m", "ruff", "format", "--no-cache", "--check", "{source}"],
+            &["{python}", "-m", "ruff", "check", "--no-cache", "{source}"],
+            &[
+                "{python}",
+                "-m",
+                "mypy",
+                "--config-file",
+                "{source}/bindings/python/pyproject.toml",
+                "--cache-dir",
+                "{work}",
+            ],
+        ],
+    },
     Suite {
         name: "C# on Mono: truths and refusals",
         environment: &[("LD_LIBRARY_PATH", "{dist}/lib")],
@@ -56,18 +74,63 @@ pub const SUITES: [Suite; 14] = [
         steps: &[CSHARP_TESTS, &["{python}", "{source}/tests/csharp/coreclr.py", "{work}/Tests.exe"]],
     },
     Suite {
+        name: "a NuGet package, unpacked and run on Mono",
+        environment: &[],
+        steps: &[
+            &[
+                "mcs",
+                "-langversion:7.2",
+                "-target:library",
+                "-doc:{work}/ShapeOp.xml",
+                "-out:{work}/ShapeOp.dll",
+                "-recurse:{source}/bindings/csharp/ShapeOp/*.cs",
+            ],
+            &[
+                "mcs",
+                "-langversion:7.2",
+                "-r:{work}/ShapeOp.dll",
+                "-out:{work}/Tests.exe",
+                "-recurse:{source}/tests/csharp/Tests/*.cs",
+            ],
+            &[
+                "{python}",
+                "{source}/bindings/csharp/pack.py",
+                "{work}/ShapeOp.dll",
+                "--native",
+                "linux-x64={library}",
+                "--out",
+                "{work}",
+            ],
+            &["{python}", "{source}/tests/csharp/package.py", "{work}", "{work}/Tests.exe"],
+        ],
+    },
+    Suite {
         name: "Grasshopper files",
-        environment: &[("SHAPEOP_LIBRARY", "{dist}/lib/libshapeop.so"), ("SHAPEOP_GH_FILES", "{ghfiles}")],
-        steps: &[&["{ghpython}", "-m", "pytest", "-q", "-p", "no:cacheprovider", "{source}/ghpython/packaging/tests"]],
+        environment: &[("SHAPEOP_LIBRARY", "{library}"), ("SHAPEOP_GH_FILES", "{ghfiles}")],
+        steps: &[&[
+            "{ghpython}",
+            "-m",
+            "pytest",
+            "-q",
+            "-rs",
+            "-p",
+            "no:cacheprovider",
+            "{source}/ghpython/packaging/tests",
+        ]],
     },
     Suite {
         name: "Grasshopper components under CPython 3",
-        environment: &[("SHAPEOP_LIBRARY", "{dist}/lib/libshapeop.so")],
-        steps: &[&["{ghpython}", "-m", "pytest", "-q", "-p", "no:cacheprovider", "{source}/ghpython/tests"]],
+        environment: &[("SHAPEOP_LIBRARY", "{library}")],
+        steps: &[&["{ghpython}", "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "{source}/ghpython/tests"]],
+    },
+    Suite {
+        name: "Grasshopper components under CPython 3.9",
+        environment: &[("SHAPEOP_LIBRARY", "{library}"), ("PYTHONDONTWRITEBYTECODE", "1")],
+        steps: &[&["{python39}", "-m", "unittest", "discover", "-s", "{source}/ghpython/tests"]],
     },
     Suite {
         name: "Grasshopper components under CPython 2.7",
-        environment: &[("SHAPEOP_LIBRARY", "{dist}/lib/libshapeop.so"), ("PYTHONDONTWRITEBYTECODE", "1")],
+        environment: &[("SHAPEOP_LIBRARY", "{library}"), ("PYTHONDONTWRITEBYTECODE", "1")],
         steps: &[&["{python27}", "-m", "unittest", "discover", "-s", "{source}/ghpython/tests"]],
     },
     Suite {
@@ -96,12 +159,12 @@ pub const SUITES: [Suite; 14] = [
     Suite {
         name: "the eight examples of the ShapeOp paper",
         environment: &[],
-        steps: &[&["{python}", "-m", "pytest", "-q", "-p", "no:cacheprovider", "{source}/examples/paper"]],
+        steps: &[&["{python}", "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "{source}/examples/paper"]],
     },
     Suite {
         name: "tests of the Python package",
         environment: &[],
-        steps: &[&["{python}", "-m", "pytest", "-q", "-p", "no:cacheprovider", "{source}/bindings/python"]],
+        steps: &[&["{python}", "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "{source}/bindings/python"]],
     },
     Suite {
         name: "mistakes in SWIG Python",
@@ -167,14 +230,18 @@ pub fn set_up(profile: &str) -> Result<Places> {
     install.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--force-reinstall", "--no-deps"]);
     install.arg(root.join("bindings/python")).env("SHAPEOP_LIBRARY_TO_BUNDLE", dist::library(&folder));
     shell::run(&mut install)?;
+    places.set("library", dist::library(&folder));
     places.set("dist", folder);
     places.set("source", &root);
     let grasshopper = environment(&root.join("target/ghpython"), &GRASSHOPPER_REQUIREMENTS)?;
     places.set("ghfiles", public_files(&grasshopper, root.join("target/ghfiles"))?);
     places.set("ghpython", grasshopper);
     places.set("python", python);
-    if let Some(python27) = setup::python("2.7") {
-        places.set("python27", python27);
+    // Those of Rhino 7 and Rhino 8.
+    for (name, version) in [("python27", "2.7"), ("python39", "3.9")] {
+        if let Some(python) = setup::python(version) {
+            places.set(name, python);
+        }
     }
     Ok(places)
 }

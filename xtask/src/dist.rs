@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 
-use crate::shell;
+use crate::{licences, shell};
 
 /// The library's file name on this platform.
 #[cfg(windows)]
@@ -81,7 +81,7 @@ pub fn run(folder: &Path, profile: &str) -> Result<()> {
             fs::read_to_string(&template).with_context(|| format!("{} could not be read", template.display()))?;
         write(&folder.join(place).join(name), &fill_in(&text).with_context(|| template.display().to_string())?)?;
     }
-    for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
+    for licence in ["LICENSE-APACHE", "LICENSE-MIT", licences::FILE] {
         copy(&root.join(licence), &folder.join("share/licenses/shapeop").join(licence))?;
     }
     for header in ["API.h", "Common.h"] {

@@ -7,6 +7,7 @@ mod dist;
 mod docs;
 mod header;
 mod languages;
+mod licences;
 mod setup;
 mod shell;
 mod show;
@@ -42,7 +43,8 @@ enum Command {
         #[arg(long)]
         check: bool,
     },
-    /// Write what is made from the code: docs/constraints.md and docs/problem.schema.json.
+    /// Write what is made from the code and from Cargo.lock: docs/constraints.md, docs/problem.schema.json, and the
+    /// licences of the crates inside the library.
     Docs,
     /// Measure what the library promises; print each figure beside its target; fail if one is short.
     Show {

@@ -40,6 +40,9 @@ const TOOLS: [Tool; 13] = [
     tool(&["mono"], "mono-runtime"),
 ];
 
+/// A library that tests load, and the Debian packages that bring it: Polyscope draws with it where there is no window.
+const LIBRARIES: [(&str, &[&str]); 1] = [("libEGL.so.1", &["libegl1", "libgl1-mesa-dri"])];
+
 /// Tries of a download before giving up, with pauses of 5, 10, ... seconds between them.
 const DOWNLOAD_TRIES: u64 = 4;
 
@@ -48,17 +51,30 @@ pub fn is_ci() -> bool {
     std::env::var("CI").as_deref() == Ok("true")
 }
 
-/// Installs the programs that are missing, where that is possible. With `CI=true` it fails if one is missing still.
+/// Installs what is missing, where that is possible. With `CI=true` it fails if something is missing still.
 pub fn install_tools() -> Result<()> {
-    let missing: Vec<&Tool> = TOOLS.iter().filter(|tool| !tool.is_there()).collect();
-    if !missing.is_empty() {
-        install(&missing.iter().map(|tool| tool.package).collect::<Vec<_>>());
+    let wanted = missing();
+    if wanted.is_empty() {
+        return Ok(());
     }
-    let still_missing: Vec<&str> = missing.iter().filter(|tool| !tool.is_there()).map(|tool| tool.package).collect();
+    install(&wanted);
+    let still_missing = missing();
     if is_ci() && !still_missing.is_empty() {
         bail!("CI leaves nothing out, but these packages are missing: {}", still_missing.join(", "));
     }
     Ok(())
+}
+
+/// The packages of the tools and libraries that are not there.
+fn missing() -> Vec<&'static str> {
+    let mut packages: Vec<&str> = TOOLS.iter().filter(|tool| !tool.is_there()).map(|tool| tool.package).collect();
+    if cfg!(target_os = "linux") {
+        let known = Command::new("/sbin/ldconfig").arg("-p").output();
+        let known = known.map_or_else(|_| String::new(), |output| String::from_utf8_lossy(&output.stdout).into_owned());
+        let not_known = LIBRARIES.iter().filter(|(name, _)| !known.contains(name));
+        packages.extend(not_known.flat_map(|(_, packages)| packages.iter()));
+    }
+    packages
 }
 
 impl Tool {

@@ -35,6 +35,11 @@ impl Places {
         self.0.insert(name, place.into().to_string_lossy().into_owned());
     }
 
+    /// The place of `name`.
+    pub fn get(&self, name: &str) -> Option<&str> {
+        self.0.get(name).map(String::as_str)
+    }
+
     /// `word` with places for their names.
     fn fill(&self, word: &str) -> Result<String, LeftOut> {
         let mut filled = word.to_owned();
@@ -53,7 +58,7 @@ impl Places {
 impl Suite {
     /// Where its commands run.
     pub fn folder(&self) -> PathBuf {
-        shell::root().join("target/suites").join(self.name.replace([' ', ':', '/'], "-"))
+        shell::root().join("target/suites").join(self.name.replace([' ', ':', ',', '/'], "-"))
     }
 
     /// Runs the commands in an empty folder, `{work}`; returns what they printed.

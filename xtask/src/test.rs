@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 
 use crate::languages::{self, TOLERANCE};
 use crate::suites::{LeftOut, Places};
-use crate::{bindings, setup, shell};
+use crate::{bindings, licences, setup, shell};
 
 /// The profile that `cargo test` builds with, so that the bindings' tests take the library as it is then.
 const PROFILE: &str = "dev";
@@ -28,6 +28,7 @@ pub fn run() -> Result<()> {
     cargo_test(&["--workspace"])?;
     cargo_test(&["--workspace", "--features", "shapeop/schema", "--test", "schema"])?;
 
+    timed("licences of the crates inside the library", || licences::run(true))?;
     let places = timed("set-up of the bindings' tests", || bindings::set_up(PROFILE))?;
     let mut lines: Vec<String> = fs::read_to_string(&left_out)?.lines().map(str::to_owned).collect();
     lines.extend(run_suites(&places, &left_out)?);
@@ -58,6 +59,9 @@ fn run_suites(places: &Places, left_out: &Path) -> Result<Vec<String>> {
             Ok(printed) => {
                 let last = printed.lines().rev().find(|line| line.contains(" passed") || line.starts_with("Ran "));
                 println!("  {}", last.or(printed.lines().last()).unwrap_or("done"));
+                // What pytest says behind the tests. Those of unittest leave out only what their Python cannot do.
+                let skipped = printed.lines().filter_map(|line| line.strip_prefix("SKIPPED "));
+                lines.extend(skipped.map(|what| format!("{}: {what}", suite.name)));
             }
         }
     }

@@ -41,7 +41,8 @@ def test_the_wheel_holds_the_library_and_suits_every_python_3(tmp_path: Path) ->
     with zipfile.ZipFile(wheel) as contents:
         names = set(contents.namelist())
         info = f"shapeop-{shapeop.__version__}.dist-info"
-        assert {"shapeop/py.typed", f"{info}/licenses/LICENSE-MIT", f"{info}/licenses/LICENSE-APACHE"} <= names
+        licences = {f"{info}/licenses/LICENSE-{name}" for name in ("MIT", "APACHE", "THIRD-PARTY")}
+        assert {"shapeop/py.typed"} | licences <= names
         assert contents.read(f"shapeop/{shapeop._library.file_name()}") == shapeop.LIBRARY_PATH.read_bytes()
         sources = {f"shapeop/{path.name}" for path in (PACKAGE / "src" / "shapeop").glob("*.py")}
         assert sources <= names

@@ -1,5 +1,6 @@
 """Opens a definition outside Rhino: reads its objects and wires, and solves it as Grasshopper does, with the stand-ins
 of `ghpython/stand_ins` in place of Rhino. The code that runs is the one in the file."""
+
 from __future__ import annotations
 
 import os
@@ -8,7 +9,6 @@ import uuid
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
-import archive
 import components
 import definition
 from archive import Chunk
@@ -180,7 +180,10 @@ class Script(_Object):
 
     def solve(self, data: Dict[str, Data]) -> None:
         self.component.ClearRuntimeMessages()
-        scope: Dict[str, Any] = {"__name__": "__main__", "ghenv": type("Environment", (), {"Component": self.component})}
+        scope: Dict[str, Any] = {
+            "__name__": "__main__",
+            "ghenv": type("Environment", (), {"Component": self.component}),
+        }
         for name, branches in data.items():
             scope[name] = _argument(self.inputs[name][0], branches)
         exec(self.code, scope)

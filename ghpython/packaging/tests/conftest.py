@@ -1,4 +1,5 @@
 """Set-up of the packaging's tests: where the modules are, and the public Grasshopper files to compare with."""
+
 from __future__ import annotations
 
 import os

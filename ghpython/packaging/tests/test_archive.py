@@ -1,4 +1,5 @@
 """The reader and writer of Grasshopper's archives, on public files and on damaged ones."""
+
 from __future__ import annotations
 
 import random

@@ -1,4 +1,5 @@
 """User objects: their structure beside that of public ones, and what a wrong component folder is answered with."""
+
 from __future__ import annotations
 
 import base64
@@ -24,7 +25,7 @@ Places = Dict[str, Set[Tuple[str, int]]]
 
 
 def places(root: Chunk) -> Places:
-    """The names and types of items, and the names of chunks (as type 0), at each place of the tree, indices left out."""
+    """Names and types of items, and names of chunks (as type 0), at each place of the tree, indices left out."""
     found: Places = defaultdict(set)
     for path, chunk in root.walk():
         place = re.sub(r"\[\d+\]", "[]", path)

@@ -1,4 +1,5 @@
 """Definitions: their structure beside that of a public one, wires, and that each build gives the same bits."""
+
 from __future__ import annotations
 
 import re

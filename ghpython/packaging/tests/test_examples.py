@@ -1,4 +1,5 @@
 """The definitions of the paper's examples: committed as they are built, and solved outside Rhino."""
+
 from __future__ import annotations
 
 import os

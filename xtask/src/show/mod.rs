@@ -1,5 +1,6 @@
 //! `cargo xtask show AREA`: what the library promises, measured, each figure beside its target.
 
+mod bindings;
 mod engine;
 mod speed;
 
@@ -13,6 +14,8 @@ pub enum Area {
     Engine,
     /// Times beside compas-shapeop and the floor, threads, scaling, acceleration, a moving handle.
     Speed,
+    /// The Python package, Grasshopper components and files, all languages, the paper's examples.
+    Bindings,
 }
 
 /// Measures and prints; fails if a figure is short of its target.
@@ -21,6 +24,7 @@ pub fn run(area: Area, reuse: bool, repetitions: Option<usize>) -> Result<()> {
     match area {
         Area::Engine => engine::show(&mut figures)?,
         Area::Speed => speed::show(&mut figures, reuse, repetitions)?,
+        Area::Bindings => bindings::show(&mut figures)?,
     }
     println!();
     if figures.short.is_empty() {
@@ -41,6 +45,11 @@ impl Figures {
     /// Begins a group of figures.
     pub fn group(&mut self, title: &str) {
         println!("\n{title}");
+    }
+
+    /// What a program said, without a figure.
+    pub fn says(&self, text: &str) {
+        text.lines().for_each(|line| println!("  {line}"));
     }
 
     /// A figure that must not exceed its target.
