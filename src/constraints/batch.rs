@@ -29,6 +29,10 @@ pub(crate) trait Batch: Any + Send + Sync {
     /// The point indices of a slot.
     fn indices(&self, slot: usize) -> &[u32];
 
+    /// Gives every constraint points of its own: its indices become consecutive numbers from `first` on, slot after slot.
+    /// Returns the number after the last.
+    fn renumber(&mut self, first: u32) -> u32;
+
     /// The scalars in force of a slot.
     fn scalars(&self, slot: usize) -> &[f64];
 
@@ -137,6 +141,12 @@ impl<T: Constraint> Batch for TypedBatch<T> {
 
     fn indices(&self, slot: usize) -> &[u32] {
         self.indices.get(slot)
+    }
+
+    fn renumber(&mut self, first: u32) -> u32 {
+        // No list of indices is ever replaced, so there are no gaps.
+        (first..).zip(self.indices.values_mut()).for_each(|(number, index)| *index = number);
+        first + self.indices.values().len() as u32
     }
 
     fn scalars(&self, slot: usize) -> &[f64] {

@@ -33,6 +33,11 @@ impl<V: Copy> Lists<V> {
         &self.values
     }
 
+    /// All values, to be replaced one by one.
+    pub(super) fn values_mut(&mut self) -> &mut [V] {
+        &mut self.values
+    }
+
     #[inline(always)]
     pub(super) fn get(&self, i: usize) -> &[V] {
         match &self.places {

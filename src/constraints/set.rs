@@ -20,6 +20,7 @@ struct Group {
     batch: Box<dyn Batch>,
     ids: Vec<u32>,
     weights: Vec<f64>,
+    is_hard: Vec<bool>,
     is_removed: Vec<bool>,
 }
 
@@ -102,6 +103,7 @@ impl Default for ConstraintSet {
             batch: new_batch(),
             ids: Vec::new(),
             weights: Vec::new(),
+            is_hard: Vec::new(),
             is_removed: Vec::new(),
         };
         Self {
@@ -118,6 +120,7 @@ impl Clone for ConstraintSet {
             batch: group.batch.clone_box(),
             ids: group.ids.clone(),
             weights: group.weights.clone(),
+            is_hard: group.is_hard.clone(),
             is_removed: group.is_removed.clone(),
         };
         Self {
@@ -172,6 +175,7 @@ impl ConstraintSet {
             }
             group.ids.push(self.places.len() as u32);
             group.weights.push(new.weight(i));
+            group.is_hard.push(false);
             group.is_removed.push(false);
             self.places.push(Some(Place { type_index, slot: slot as u32 }));
         }
@@ -233,18 +237,79 @@ impl ConstraintSet {
         check_weight(weight)
     }
 
+    /// Makes a constraint hard or soft; returns true if it was the other before.
+    ///
+    /// # Errors
+    /// The id is no constraint, or its rest state is degenerate and it is to become hard: nothing can be demanded of it.
+    pub fn set_hard(&mut self, id: ConstraintId, is_hard: bool) -> Result<bool> {
+        self.check_hard(id, is_hard)?;
+        let place = self.place(id)?;
+        let old = &mut self.groups[place.type_index.0 as usize].is_hard[place.slot as usize];
+        Ok(std::mem::replace(old, is_hard) != is_hard)
+    }
+
+    /// Refuses what [`ConstraintSet::set_hard`] would refuse.
+    ///
+    /// # Errors
+    /// As [`ConstraintSet::set_hard`].
+    pub fn check_hard(&self, id: ConstraintId, is_hard: bool) -> Result<()> {
+        let place = self.place(id)?;
+        let batch = &self.groups[place.type_index.0 as usize].batch;
+        if is_hard && batch.is_degenerate(place.slot as usize) {
+            let name = place.type_index.info().name;
+            let reason = format!(
+                "constraint {id} (\"{name}\") cannot be hard: its points span too little at rest for it to move them"
+            );
+            return Err(Error::new(Status::InvalidValue, reason));
+        }
+        Ok(())
+    }
+
+    /// The number of hard constraints.
+    pub fn hard_count(&self) -> usize {
+        self.groups.iter().map(|group| group.is_hard.iter().filter(|is_hard| **is_hard).count()).sum()
+    }
+
+    /// The hard ones or the soft ones alone. Ids stay.
+    pub(crate) fn part(&self, is_hard: bool) -> Self {
+        let mut part = self.clone();
+        for (id, place) in self.places.iter().enumerate() {
+            let Some(place) = place else { continue };
+            if self.groups[place.type_index.0 as usize].is_hard[place.slot as usize] != is_hard {
+                part.drop_place(id, *place);
+            }
+        }
+        part.compact();
+        part
+    }
+
+    /// Gives every constraint points of its own, batch after batch and slot after slot; returns their number.
+    pub(crate) fn renumber(&mut self) -> usize {
+        self.groups.iter_mut().fold(0, |first, group| group.batch.renumber(first)) as usize
+    }
+
+    /// The ids of the constraints in the order of batches and slots.
+    pub(crate) fn ids_by_slot(&self) -> impl Iterator<Item = ConstraintId> + '_ {
+        self.groups.iter().flat_map(|group| group.ids.iter().map(|&id| id as ConstraintId))
+    }
+
     /// Removes a constraint; its id is never given out again.
     ///
     /// # Errors
     /// The id is no constraint.
     pub fn remove(&mut self, id: ConstraintId) -> Result<()> {
         let place = self.place(id)?;
+        self.drop_place(id, place);
+        Ok(())
+    }
+
+    fn drop_place(&mut self, id: ConstraintId, place: Place) {
         let (group, slot) = (&mut self.groups[place.type_index.0 as usize], place.slot as usize);
         group.is_removed[slot] = true;
+        group.is_hard[slot] = false;
         group.weights[slot] = 0.0;
         self.places[id] = None;
         self.removed_count += 1;
-        Ok(())
     }
 
     /// Drops the slots of removed constraints.
@@ -259,6 +324,8 @@ impl ConstraintSet {
             group.ids.retain(|_| flags.next() == Some(&true));
             let mut flags = keep.iter();
             group.weights.retain(|_| flags.next() == Some(&true));
+            let mut flags = keep.iter();
+            group.is_hard.retain(|_| flags.next() == Some(&true));
             group.is_removed = vec![false; group.ids.len()];
             for (slot, &id) in group.ids.iter().enumerate() {
                 if let Some(place) = &mut self.places[id as usize] {
@@ -297,6 +364,7 @@ impl ConstraintSet {
             info: place.type_index.info(),
             indices: group.batch.indices(slot),
             weight: group.weights[slot],
+            is_hard: group.is_hard[slot],
             scalars: group.batch.scalars(slot),
             is_degenerate: group.batch.is_degenerate(slot),
         })
@@ -406,6 +474,8 @@ pub struct ConstraintView<'a> {
     pub indices: &'a [u32],
     /// The user's weight.
     pub weight: f64,
+    /// True if it must be met exactly; its weight is then its priority where not everything can be.
+    pub is_hard: bool,
     /// The scalars in force.
     pub scalars: &'a [f64],
     /// True if its rest state is degenerate.

@@ -6,9 +6,11 @@
 
 mod forces;
 mod json;
+mod objective;
 pub mod recipes;
 
 pub use forces::{Force, ForceId, ForceSet};
+pub use objective::{Fairness, FairnessRows, Handle, Objective};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

@@ -136,7 +136,7 @@ fn each_target(
 
 /// Calls `visit(i, j, value)` for every contribution of the constraints to the lower triangle of `N`. Constraints of
 /// weight 0 contribute zeros, so that they are in the pattern when their weight is raised.
-fn each_entry(
+pub(super) fn each_entry(
     constraints: &ConstraintSet,
     stiffness: Option<&[Vec<f64>]>,
     point_count: usize,

@@ -21,6 +21,10 @@ impl Solver {
     /// The solver was not initialised (`NotInitialised`); a force acts along a free motion (`Unbounded`); coordinates or
     /// weights are so large that the result is not finite (`InvalidValue`). The points are then as before.
     pub fn solve(&mut self, iterations: u32) -> Result<()> {
+        if self.explores() {
+            let options = SolveOptions { max_iterations: iterations, tolerance: 0.0, time_budget_seconds: 0.0 };
+            return self.explore(&options, false, &mut |_| ControlFlow::Continue(())).map(drop);
+        }
         self.run(|solver| {
             solver.on_pool(|solver, is_parallel| solver.iterate_blindly(iterations, is_parallel));
             true
@@ -39,6 +43,9 @@ impl Solver {
                 let reason = format!("expected a finite number of at least 0, found {value}");
                 return Err(Error::new(Status::InvalidValue, reason).at(name));
             }
+        }
+        if self.explores() {
+            return self.explore(options, true, progress);
         }
         let mut found = None;
         let result = self.run(|solver| found.insert(solver.iterate(options, progress)).is_finite());
@@ -309,7 +316,7 @@ impl Report {
         [self.energy_before, self.energy_after, self.largest_move].iter().all(|number| number.is_finite())
     }
 
-    fn empty() -> Self {
+    pub(super) fn empty() -> Self {
         Self {
             iterations: 0,
             evaluations: 0,
@@ -349,7 +356,7 @@ struct Clock {
 }
 
 /// The diagonal of the bounding box; 1 where all points coincide, so that relative moves are then absolute ones.
-fn bounding_box_diagonal(points: &[DVec3]) -> f64 {
+pub(super) fn bounding_box_diagonal(points: &[DVec3]) -> f64 {
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let diagonal = low.distance(high);

@@ -9,6 +9,7 @@ mod acceleration;
 mod anderson;
 mod assembly;
 mod chunks;
+mod exploration;
 mod free_components;
 mod history;
 mod linear_solver;
@@ -18,6 +19,7 @@ mod quasi_newton;
 mod report;
 mod system;
 
+pub use exploration::{Found, ObjectiveTerms, Residuals, Sensitivities, WeightClass};
 pub use linear_solver::LinearSolver;
 pub use report::{IterationBytes, Outcome, Progress, Rejections, Report, SolveOptions};
 
@@ -30,6 +32,7 @@ use crate::constraints::{ConstraintId, ConstraintSet, ConstraintView, Edited, Ne
 use crate::error::{Error, Result, Status, finite};
 use crate::problem::{Acceleration, Force, ForceId, ForceSet, Mode, Problem};
 use acceleration::Accelerator;
+use exploration::Explorer;
 use system::{System, SystemCounts};
 
 /// Iterations without a lower energy or a smaller largest move after which a solve is called stalled.
@@ -64,6 +67,7 @@ pub struct Solver {
     linear_solver: LinearSolver,
     thread_count: usize,
     pool: Option<Arc<rayon::ThreadPool>>,
+    explorer: Explorer,
 }
 
 /// The state of the time integration; in static mode only mass and step of libShapeOp's defaults.
@@ -239,8 +243,10 @@ impl Solver {
     /// # Errors
     /// See [`ConstraintSet::edit`].
     pub fn edit_constraint(&mut self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<()> {
-        if self.constraints.edit(type_name, id, scalars)? == Edited::Rows {
-            self.invalidate();
+        match self.constraints.edit(type_name, id, scalars)? {
+            Edited::Nothing => {}
+            Edited::Targets => self.explorer.scalars_changed(),
+            Edited::Rows => self.invalidate(),
         }
         Ok(())
     }
@@ -447,6 +453,8 @@ impl Solver {
             self.invalidate();
         }
         self.dynamics = Some(new);
+        self.explorer.initial = self.points.clone();
+        self.explorer.invalidate();
         let prepared = self.prepare();
         if prepared.is_err() {
             self.dynamics = before;
@@ -460,6 +468,7 @@ impl Solver {
 
     /// Marks the system as outdated.
     fn invalidate(&mut self) {
+        self.explorer.invalidate();
         if let Some(system) = self.system.take() {
             self.outdated_system = Some(system);
         }
@@ -471,6 +480,9 @@ impl Solver {
             let reason = "the solver was not initialised: call init or initDynamic before solve";
             return Err(Error::new(Status::NotInitialised, reason));
         };
+        if dynamics.mode == Mode::Static && self.explores() {
+            return Ok(());
+        }
         if self.system.is_none() {
             self.constraints.compact();
             let inertia = if dynamics.mode == Mode::Dynamic { dynamics.inertia() } else { 0.0 };

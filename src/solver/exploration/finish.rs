@@ -1,0 +1,410 @@
+//! The finish: Newton's method on the augmented Lagrangian with its multipliers, once the sweeps are near.
+//!
+//! With `w = A p + u`, `v = P(w)` (that of the elastic set) and a penalty `m`, the multiplier is `λ = m u`, and a solution is where
+//!
+//! ```text
+//! ∇F(p) + m Aᵀ u = 0,        A p − v = 0
+//! ```
+//!
+//! Both are linearised with the derivative `J` of the projection, soft constraints included, so that the active set and the curvature
+//! of the sets come from the projections alone. The matrix `∇²F + m Aᵀ (I − J) A` is positive definite near a minimum; the multipliers
+//! of the linear problem are found by the method of multipliers, at one solve with its factor each. A step counts if it lowers the
+//! larger of the two residuals; otherwise the first solve is a descent direction of the augmented Lagrangian, which is searched.
+//! Source: Bertsekas 1996, "Constrained optimization and Lagrange multiplier methods", sections 2.3 and 4.
+
+use glam::DVec3;
+
+use super::derivatives::{Derivatives, add_transposed};
+use super::local::{Item, Local};
+use super::quadratic::Quadratic;
+use crate::error::Result;
+use crate::linalg::cholesky::{Analysis, Factor};
+use crate::linalg::symmetric::SymmetricMatrix;
+
+/// Newton steps at most.
+const STEPS: u32 = 30;
+
+/// Multiplier updates of one linear problem at most, and by how much they are to lower its residual.
+const UPDATES: u32 = 8;
+const UPDATED_ENOUGH: f64 = 1e-4;
+
+/// The penalty of the finish over that of the sweeps.
+const STIFFER: f64 = 100.0;
+
+/// Entries of the constraints' blocks from which on no Newton step is made: the factor would be out of proportion.
+pub(super) const MOST_ENTRIES: usize = 60_000_000;
+
+/// How far a solution is from being one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residuals {
+    /// The largest distance of a hard constraint's rows from its set, in model units.
+    pub primal: f64,
+    /// The largest gradient of the Lagrangian at a point, over the force that moves a point of mean stiffness by the model's size.
+    pub dual: f64,
+}
+
+/// Points and multipliers with what was found there.
+struct State {
+    points: Vec<DVec3>,
+    /// `u`, in rows.
+    u: Vec<DVec3>,
+    /// `w − v`: the next multipliers.
+    excess: Vec<DVec3>,
+    /// `∇F`.
+    gradient: Vec<DVec3>,
+    /// The augmented Lagrangian.
+    value: f64,
+    residuals: Residuals,
+}
+
+/// What the method works with.
+pub(super) struct Finish<'a> {
+    pub(super) quadratic: &'a Quadratic,
+    pub(super) soft: &'a mut Local,
+    pub(super) hard: &'a mut Local,
+    /// The largest multipliers.
+    pub(super) caps: &'a [f64],
+    /// `m`.
+    pub(super) penalty: f64,
+    /// The model's size, and the force that moves a point of mean stiffness by it.
+    pub(super) size: f64,
+    pub(super) force: f64,
+    pub(super) is_parallel: bool,
+}
+
+/// What is kept from one finish to the next: the pattern does not change with the points.
+#[derive(Default)]
+pub(super) struct Kept {
+    matrix: Option<(SymmetricMatrix, Analysis)>,
+}
+
+/// The system of a Newton step, ready for any number of right-hand sides.
+pub(super) struct System {
+    factor: Factor,
+    soft: Derivatives,
+    hard: Derivatives,
+}
+
+/// What a finish led to.
+pub(super) struct Finished {
+    pub(super) points: Vec<DVec3>,
+    /// `u` by rows; the multiplier is the penalty times it.
+    pub(super) u: Vec<DVec3>,
+    pub(super) residuals: Residuals,
+    pub(super) steps: u32,
+    pub(super) factorisations: u32,
+    pub(super) capped: usize,
+}
+
+/// The penalty that a finish behind sweeps with `penalty` takes.
+pub(super) fn penalty_behind(penalty: f64) -> f64 {
+    STIFFER * penalty
+}
+
+impl Finish<'_> {
+    /// Newton steps from `points` with the multipliers `m u` until both residuals are below their tolerance, or until no step helps.
+    /// `goes_on` is asked before each step.
+    pub(super) fn run(
+        &mut self,
+        points: &[DVec3],
+        u: &[DVec3],
+        tolerance: f64,
+        kept: &mut Kept,
+        goes_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Finished> {
+        let mut state = self.state(points.to_vec(), u.to_vec());
+        let (mut steps, mut factorisations) = (0, 0);
+        while steps < STEPS && !state.residuals.are_within(tolerance, self.size) && goes_on() {
+            let Some(system) = self.system(&state, kept, &mut factorisations)? else { break };
+            steps += 1;
+            let Some(next) = self.step(&state, system) else { break };
+            state = next;
+        }
+        let capped = self.capped(&state);
+        Ok(Finished { points: state.points, u: state.u, residuals: state.residuals, steps, factorisations, capped })
+    }
+
+    /// The number of constraints whose multiplier is at its cap.
+    fn capped(&self, state: &State) -> usize {
+        let at_cap = |(item, cap): &(&Item, &f64)| {
+            let squares: f64 = state.u[item.rows()].iter().map(|u| u.length_squared()).sum();
+            self.penalty * item.scale * squares.sqrt() >= (1.0 - 1e-9) * **cap
+        };
+        self.hard.items.iter().zip(self.caps).filter(at_cap).count()
+    }
+
+    /// The residuals at `points` with the multipliers `m u`, computed afresh.
+    pub(super) fn residuals(&mut self, points: &[DVec3], u: &[DVec3]) -> Residuals {
+        self.state(points.to_vec(), u.to_vec()).residuals
+    }
+
+    /// One step: a state that is nearer, or none.
+    fn step(&mut self, state: &State, mut system: System) -> Option<State> {
+        let (first, whole) = self.solve(&mut system, &state.gradient, &state.excess, &state.u);
+        let moved = |direction: &[DVec3], length: f64| -> Vec<DVec3> {
+            state.points.iter().zip(direction).map(|(p, step)| *p + length * *step).collect()
+        };
+        let u = state.u.iter().zip(&whole.multipliers).map(|(u, step)| *u + *step).collect();
+        let next = self.state(moved(&whole.points, 1.0), u);
+        if self.merit(&next) < 0.5 * self.merit(state) {
+            return Some(next);
+        }
+        // The slope of the augmented Lagrangian along the first solve.
+        let gradient = self.lagrangian_gradient(&state.gradient, &state.excess);
+        let slope: f64 = gradient.iter().zip(&first).map(|(g, step)| g.dot(*step)).sum();
+        let mut length = 1.0;
+        while slope < 0.0 && length > 1e-3 {
+            let trial = self.state(moved(&first, length), state.u.clone());
+            if trial.value < state.value + 1e-4 * length * slope {
+                let excess = trial.excess.clone();
+                return Some(self.state(trial.points, excess));
+            }
+            length *= 0.5;
+        }
+        (self.merit(&next) < self.merit(state)).then_some(next)
+    }
+
+    fn merit(&self, state: &State) -> f64 {
+        let Residuals { primal, dual } = state.residuals;
+        let merit = (primal / self.size).max(dual);
+        if merit.is_finite() { merit } else { f64::INFINITY }
+    }
+
+    /// What is to be known at `points` with `u`.
+    fn state(&mut self, points: Vec<DVec3>, u: Vec<DVec3>) -> State {
+        let mut gradient = vec![DVec3::ZERO; points.len()];
+        self.quadratic.gradient(&points, &mut gradient);
+        let terms = self.quadratic.terms(&points);
+        let mut value = terms.handles + terms.closeness + terms.fairness - self.quadratic.work(&points);
+        let mut images = vec![DVec3::ZERO; self.soft.row_count()];
+        self.soft.place(&points, &mut images, |_, _, _| {}, self.is_parallel);
+        self.soft.project(self.is_parallel);
+        for (item, stiffness) in self.soft.items.iter().zip(&self.soft.stiffness) {
+            let rows = images[item.rows()].iter().zip(&self.soft.targets[item.rows()]);
+            let rest: Vec<DVec3> = rows.map(|(image, target)| *image - *target).collect();
+            value += 0.5 * stiffness * rest.iter().map(|row| row.length_squared()).sum::<f64>();
+            add_transposed(self.soft, item, *stiffness, &rest, &mut gradient);
+        }
+        let mut images = vec![DVec3::ZERO; self.hard.row_count()];
+        let shift = |item: &Item, _: &[DVec3], shift: &mut [DVec3]| shift.copy_from_slice(&u[item.rows()]);
+        self.hard.place(&points, &mut images, shift, self.is_parallel);
+        self.hard.project(self.is_parallel);
+        let mut excess = vec![DVec3::ZERO; images.len()];
+        let mut primal = 0.0_f64;
+        for (i, item) in self.hard.items.iter().enumerate() {
+            let reach = self.caps[i] / self.penalty;
+            let own = item.rows();
+            let rest = |r: usize| images[r] + u[r] - self.hard.targets[r];
+            let distance = item.scale * own.clone().map(|r| rest(r).length_squared()).sum::<f64>().sqrt();
+            let part = if distance > reach { reach / distance } else { 1.0 };
+            for r in own.clone() {
+                excess[r] = part * rest(r);
+            }
+            value += self.penalty * if distance > reach { reach * (distance - 0.5 * reach) } else { 0.5 * distance * distance };
+            let gap: f64 = own.map(|r| (excess[r] - u[r]).length_squared()).sum();
+            primal = primal.max(item.scale * gap.sqrt());
+        }
+        let dual = self.lagrangian_gradient(&gradient, &u);
+        let dual = dual.iter().map(|g| g.length()).fold(0.0, f64::max) / self.force;
+        State { points, u, excess, gradient, value, residuals: Residuals { primal, dual } }
+    }
+
+    /// `∇F + m Aᵀ u`.
+    fn lagrangian_gradient(&self, gradient: &[DVec3], u: &[DVec3]) -> Vec<DVec3> {
+        let mut sums = gradient.to_vec();
+        for item in &self.hard.items {
+            let factor = self.penalty * item.scale * item.scale;
+            add_transposed(self.hard, item, factor, &u[item.rows()], &mut sums);
+        }
+        sums
+    }
+
+    /// The system at `state`; `None` if its matrix is not positive definite, whatever is added to the diagonal.
+    fn system(&mut self, state: &State, kept: &mut Kept, factorisations: &mut u32) -> Result<Option<System>> {
+        // Where the state placed the constraints' points; another state may have been looked at since.
+        let u = &state.u;
+        let mut images = vec![DVec3::ZERO; self.soft.row_count()];
+        self.soft.place(&state.points, &mut images, |_, _, _| {}, self.is_parallel);
+        let mut images = vec![DVec3::ZERO; self.hard.row_count()];
+        let shift = |item: &Item, _: &[DVec3], shift: &mut [DVec3]| shift.copy_from_slice(&u[item.rows()]);
+        self.hard.place(&state.points, &mut images, shift, self.is_parallel);
+        let soft = Derivatives::new(self.soft, self.size, |_, _, _, _| {}, self.is_parallel);
+        let (caps, penalty) = (self.caps, self.penalty);
+        let elastic = |i: usize, item: &Item, rows: &[DVec3], targets: &mut [DVec3]| {
+            let reach = caps[i] / penalty;
+            let squares: f64 = rows.iter().zip(&*targets).map(|(row, target)| row.distance_squared(*target)).sum();
+            let distance = item.scale * squares.sqrt();
+            if distance > reach {
+                targets.iter_mut().zip(rows).for_each(|(target, row)| *target = *row + reach / distance * (*target - *row));
+            }
+        };
+        let hard = Derivatives::new(self.hard, self.size, elastic, self.is_parallel);
+        let n = state.points.len();
+        if kept.matrix.is_none() {
+            let matrix = SymmetricMatrix::with_pattern(3 * n, |report| {
+                self.quadratic.each_entry(&mut |i, j, _| (0..3).for_each(|b| report(3 * i + b, 3 * j + b)));
+                for local in [&*self.soft, &*self.hard] {
+                    for item in &local.items {
+                        let indices = &local.indices[item.points()];
+                        let unknowns = || indices.iter().flat_map(|&i| (0..3).map(move |b| 3 * i + b));
+                        unknowns().for_each(|i| unknowns().filter(|j| *j <= i).for_each(|j| report(i, j)));
+                    }
+                }
+            })?;
+            let analysis = Analysis::new(matrix.pattern(), &[])?;
+            kept.matrix = Some((matrix, analysis));
+        }
+        let Some((matrix, analysis)) = &mut kept.matrix else { return Ok(None) };
+        let mut factor = Factor::new(analysis, matrix.pattern())?;
+        let mut shift = 0.0;
+        for _ in 0..8 {
+            self.assemble(matrix, &soft, &hard, shift);
+            let is_positive = (0..3 * n).all(|i| matrix.diagonal(i) > 0.0);
+            if is_positive {
+                factor.factorise(matrix, self.is_parallel)?;
+                *factorisations += 1;
+                if !factor.is_singular() {
+                    return Ok(Some(System { factor, soft, hard }));
+                }
+            }
+            shift = if shift == 0.0 { 1e-3 * self.penalty } else { 10.0 * shift };
+        }
+        Ok(None)
+    }
+
+    fn assemble(&self, matrix: &mut SymmetricMatrix, soft: &Derivatives, hard: &Derivatives, shift: f64) {
+        let n = matrix.dimension() / 3;
+        let (pattern, values) = matrix.split();
+        values.fill(0.0);
+        self.quadratic.each_entry(&mut |i, j, value| {
+            for b in 0..3 {
+                pattern.add(values, 3 * i + b, 3 * j + b, value);
+            }
+        });
+        let mut block = Vec::new();
+        for (local, derivatives, factor) in [(&*self.soft, soft, None), (&*self.hard, hard, Some(self.penalty))] {
+            for (i, item) in local.items.iter().enumerate() {
+                let factor = factor.map_or(local.stiffness[i], |penalty| penalty * item.scale * item.scale);
+                let indices = &local.indices[item.points()];
+                derivatives.each_entry(local, i, &mut block, |a, b, value| {
+                    let unknown = |c: usize| 3 * indices[c / 3] + (c % 3) as u32;
+                    let (row, column) = (unknown(a), unknown(b));
+                    // A repeated point meets itself in both triangles.
+                    let times = if row == column && a != b { 2.0 } else { 1.0 };
+                    pattern.add(values, row, column, times * factor * value);
+                });
+            }
+        }
+        for i in 0..3 * n as u32 {
+            pattern.add(values, i, i, shift);
+        }
+    }
+
+    /// Solves the linearised conditions for steps of points and multipliers: `gradient` is that of the objective, `excess` and `u` are
+    /// the state's. Returns the points' step of the first solve, and the whole.
+    pub(super) fn solve(&self, system: &mut System, gradient: &[DVec3], excess: &[DVec3], u: &[DVec3]) -> (Vec<DVec3>, Steps) {
+        let n = gradient.len();
+        let mut steps = Steps { points: vec![DVec3::ZERO; n], multipliers: vec![DVec3::ZERO; u.len()] };
+        let mut first = Vec::new();
+        let mut total = excess.to_vec();
+        let (mut smallest, mut enough) = (f64::INFINITY, 0.0);
+        for _ in 0..UPDATES {
+            let mut sums = gradient.to_vec();
+            let mut curved = vec![DVec3::ZERO; n];
+            self.quadratic.apply(&steps.points, &mut curved);
+            sums.iter_mut().zip(&curved).for_each(|(sum, curved)| *sum += *curved);
+            self.add_soft_curvature(system, &steps.points, &mut sums);
+            for item in &self.hard.items {
+                let factor = self.penalty * item.scale * item.scale;
+                add_transposed(self.hard, item, factor, &total[item.rows()], &mut sums);
+            }
+            // Three unknowns per point: x, y and z of the right-hand side one after the other.
+            let mut unknowns: Vec<DVec3> =
+                sums.iter().flat_map(|sum| sum.to_array()).map(|value| DVec3::new(-value, 0.0, 0.0)).collect();
+            system.factor.solve(&mut unknowns, self.is_parallel);
+            for (step, new) in steps.points.iter_mut().zip(unknowns.chunks_exact(3)) {
+                *step += DVec3::new(new[0].x, new[1].x, new[2].x);
+            }
+            if first.is_empty() {
+                first = steps.points.clone();
+            }
+            let residual = self.update_multipliers(system, excess, u, &mut steps, &mut total);
+            if smallest.is_infinite() {
+                enough = UPDATED_ENOUGH * residual;
+            }
+            // True for NaN too.
+            if !(residual > enough && residual < smallest) {
+                break;
+            }
+            smallest = residual;
+        }
+        (first, steps)
+    }
+
+    /// Adds the soft constraints' second derivatives times `step`.
+    fn add_soft_curvature(&self, system: &System, step: &[DVec3], sums: &mut [DVec3]) {
+        let (mut own, mut rows) = (Vec::new(), Vec::new());
+        for (i, item) in self.soft.items.iter().enumerate() {
+            own.clear();
+            own.extend(self.soft.indices[item.points()].iter().map(|&index| step[index as usize]));
+            rows.clear();
+            rows.resize(item.row_count, DVec3::ZERO);
+            system.soft.residual(self.soft, i, &own, &mut rows);
+            add_transposed(self.soft, item, self.soft.stiffness[i], &rows, sums);
+        }
+    }
+
+    /// The multipliers that the steps of the points ask for; returns what is left of the linearised constraints, in model units.
+    fn update_multipliers(
+        &self,
+        system: &System,
+        excess: &[DVec3],
+        u: &[DVec3],
+        steps: &mut Steps,
+        total: &mut [DVec3],
+    ) -> f64 {
+        let (mut own, mut rows) = (Vec::new(), Vec::new());
+        let mut largest = 0.0_f64;
+        for (i, item) in self.hard.items.iter().enumerate() {
+            let of_item = item.rows();
+            let mut at = |lift: &[DVec3], with_points: bool, rows: &mut Vec<DVec3>| {
+                own.clear();
+                own.extend(self.hard.indices[item.points()].iter().enumerate().map(|(place, &index)| {
+                    let step = if with_points { steps.points[index as usize] } else { DVec3::ZERO };
+                    step + self.hard.lifted(item, place, lift)
+                }));
+                rows.clear();
+                rows.resize(item.row_count, DVec3::ZERO);
+                system.hard.residual(self.hard, i, &own, rows);
+            };
+            let old = &steps.multipliers[of_item.clone()];
+            at(old, true, &mut rows);
+            let found: Vec<DVec3> = rows.iter().zip(&excess[of_item.clone()]).map(|(row, e)| *e + *row).collect();
+            let gap: f64 =
+                found.iter().zip(&u[of_item.clone()]).zip(old).map(|((e, u), step)| (*e - *u - *step).length_squared()).sum();
+            largest = largest.max(item.scale * gap.sqrt());
+            for (r, e) in of_item.zip(found) {
+                steps.multipliers[r] = e - u[r];
+            }
+            // What the next solve has to balance: the excess with the new multipliers.
+            at(&steps.multipliers[item.rows()], true, &mut rows);
+            for ((total, row), e) in total[item.rows()].iter_mut().zip(&rows).zip(&excess[item.rows()]) {
+                *total = *e + *row;
+            }
+        }
+        largest
+    }
+}
+
+/// Steps of points and multipliers.
+pub(super) struct Steps {
+    pub(super) points: Vec<DVec3>,
+    pub(super) multipliers: Vec<DVec3>,
+}
+
+impl Residuals {
+    /// True if both are within `tolerance`, which is relative to the model's `size` and to the force that belongs to it.
+    pub(super) fn are_within(&self, tolerance: f64, size: f64) -> bool {
+        self.primal <= tolerance * size && self.dual <= tolerance
+    }
+}
