@@ -37,6 +37,7 @@ fn table() -> String {
         let rows = match info.rows {
             Rows::Centred => "centred".to_owned(),
             Rows::Linear(count) => count.to_string(),
+            Rows::Pairs => "one per pair".to_owned(),
         };
         let projection = match info.projection {
             Projection::Nearest => "nearest",

@@ -42,7 +42,7 @@ pub(crate) trait Batch: Any + Send + Sync {
     /// The factor on the user's weight.
     fn measure(&self, slot: usize) -> f64;
 
-    /// The row coefficients of a slot, row by row. Empty for centred types.
+    /// The row coefficients of a slot, row by row. Empty unless its rows are [`Rows::Linear`].
     fn rows(&self, slot: usize) -> &[f64];
 
     /// The position of the first target of a slot in the batch's targets; for `slot == len()`, their number.
@@ -78,7 +78,7 @@ pub(super) struct TypedBatch<T> {
     rest: Vec<T>,
     indices: Lists<u32>,
     scalars: Lists<f64>,
-    /// `row_count * k` per slot, row by row; nothing for centred types.
+    /// `row_count * k` per slot, row by row; nothing unless the rows are [`Rows::Linear`].
     coefficients: Vec<f64>,
 }
 
@@ -88,18 +88,13 @@ impl<T: Constraint> TypedBatch<T> {
     }
 
     fn stencil<'a>(&'a self, slot: usize, points: &'a [DVec3]) -> Stencil<'a> {
-        match T::INFO.rows {
-            Rows::Centred => Stencil::centred(points, self.indices.get(slot)),
-            Rows::Linear(_) => Stencil::absolute(points, self.indices.get(slot)),
-        }
+        T::INFO.rows.stencil(points, self.indices.get(slot))
     }
 
     /// The part of `coefficients` that belongs to `slot`.
     fn coefficient_range(&self, slot: usize) -> Range<usize> {
-        match T::INFO.rows {
-            Rows::Centred => 0..0,
-            Rows::Linear(row_count) => row_count * self.indices.start(slot)..row_count * self.indices.start(slot + 1),
-        }
+        // Both are linear in the number of points, so that those of all slots before are those of all their points.
+        T::INFO.rows.stored_count(self.indices.start(slot))..T::INFO.rows.stored_count(self.indices.start(slot + 1))
     }
 
     fn computed_rows(&self, slot: usize) -> Vec<f64> {
@@ -121,10 +116,7 @@ impl<T: Constraint> Batch for TypedBatch<T> {
     }
 
     fn push(&mut self, points: &[DVec3], indices: &[u32]) {
-        let stencil = match T::INFO.rows {
-            Rows::Centred => Stencil::centred(points, indices),
-            Rows::Linear(_) => Stencil::absolute(points, indices),
-        };
+        let stencil = T::INFO.rows.stencil(points, indices);
         self.rest.push(self.scalars.push_with(|scalars| T::at_rest(stencil, scalars)));
         self.indices.push_with(|all| all.extend_from_slice(indices));
         self.coefficients.extend(self.computed_rows(self.rest.len() - 1));
@@ -173,8 +165,8 @@ impl<T: Constraint> Batch for TypedBatch<T> {
 
     fn target_offset(&self, slot: usize) -> usize {
         match T::INFO.rows {
-            Rows::Centred => self.indices.start(slot),
             Rows::Linear(row_count) => row_count * slot,
+            rows => rows.count(self.indices.start(slot)),
         }
     }
 
@@ -458,10 +450,7 @@ impl<T: Constraint> TypedBatch<T> {
         targets: &mut [DVec3],
     ) -> Option<Mask<S>> {
         let (four, x) = self.four::<K, S>(simd, slot, points)?;
-        let rows = match T::INFO.rows {
-            Rows::Centred => K,
-            Rows::Linear(rows) => rows,
-        };
+        let rows = T::INFO.rows.count(K);
         // A type has at most as many rows as points.
         let mut four_targets = [V4::zero(simd); K];
         let is_done = T::project_four(four, &x, &mut four_targets[..rows]);
@@ -500,6 +489,13 @@ impl<T: Constraint> TypedBatch<T> {
                     squared = (x - target).dot(x - target) + squared;
                 }
             }
+            Rows::Pairs => {
+                let targets = &targets[..4 * (K / 2)];
+                for (row, pair) in x.chunks_exact(2).enumerate() {
+                    let residual = pair[1] - pair[0] - V4::gather_every(simd, K / 2, &targets[row..]);
+                    squared = residual.dot(residual) + squared;
+                }
+            }
             Rows::Linear(rows) => {
                 let targets = &targets[..4 * rows];
                 let coefficients = &self.coefficients[self.coefficient_range(slot).start..][..4 * rows * K];
@@ -524,6 +520,10 @@ impl<T: Constraint> TypedBatch<T> {
         let x = self.stencil(slot, points);
         match T::INFO.rows {
             Rows::Centred => x.iter().zip(targets).map(|(point, &target)| (point - target).length_squared()).sum(),
+            Rows::Pairs => {
+                let edges = (0..x.len() / 2).map(|row| x.at(2 * row + 1) - x.at(2 * row));
+                edges.zip(targets).map(|(edge, &target)| (edge - target).length_squared()).sum()
+            }
             Rows::Linear(_) => {
                 let rows = self.rows(slot).chunks_exact(x.len());
                 let image = |row: &[f64]| row.iter().zip(x.iter()).map(|(&a, point)| a * point).sum::<DVec3>();

@@ -19,15 +19,15 @@ const SAMPLES: u64 = 300;
 const ROUND_OFF: f64 = 1e-10;
 
 /// A fixed stream of numbers in `[0, 1)`.
-struct Stream(u64);
+pub(super) struct Stream(pub(super) u64);
 
 impl Stream {
-    fn next(&mut self) -> f64 {
+    pub(super) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn vector(&mut self) -> DVec3 {
+    pub(super) fn vector(&mut self) -> DVec3 {
         2.0 * DVec3::new(self.next(), self.next(), self.next()) - 1.0
     }
 
@@ -38,17 +38,17 @@ impl Stream {
 
 /// One constraint on its own points, `0, 1, …`.
 #[derive(Clone, Debug)]
-struct Sample<T> {
-    constraint: T,
-    scalars: Vec<f64>,
+pub(super) struct Sample<T> {
+    pub(super) constraint: T,
+    pub(super) scalars: Vec<f64>,
     indices: Vec<u32>,
 }
 
 impl<T: Constraint> Sample<T> {
-    fn at_rest(rest: &[DVec3]) -> Self {
+    pub(super) fn at_rest(rest: &[DVec3]) -> Self {
         let indices: Vec<u32> = (0..rest.len() as u32).collect();
         let mut scalars = Vec::new();
-        let constraint = T::at_rest(stencil(T::INFO.rows, rest, &indices), &mut scalars);
+        let constraint = T::at_rest(T::INFO.rows.stencil(rest, &indices), &mut scalars);
         Self { constraint, scalars, indices }
     }
 
@@ -81,21 +81,18 @@ impl<T: Constraint> Sample<T> {
         sample
     }
 
-    fn project(&self, x: &[DVec3]) -> Vec<DVec3> {
+    pub(super) fn project(&self, x: &[DVec3]) -> Vec<DVec3> {
         let mut targets = vec![DVec3::NAN; self.row_count()];
-        self.constraint.project(&self.scalars, stencil(T::INFO.rows, x, &self.indices), &mut targets);
+        self.constraint.project(&self.scalars, T::INFO.rows.stencil(x, &self.indices), &mut targets);
         targets
     }
 
-    fn violation(&self, x: &[DVec3]) -> f64 {
-        self.constraint.violation(&self.scalars, stencil(T::INFO.rows, x, &self.indices))
+    pub(super) fn violation(&self, x: &[DVec3]) -> f64 {
+        self.constraint.violation(&self.scalars, T::INFO.rows.stencil(x, &self.indices))
     }
 
     fn row_count(&self) -> usize {
-        match T::INFO.rows {
-            Rows::Centred => self.indices.len(),
-            Rows::Linear(row_count) => row_count,
-        }
+        T::INFO.rows.count(self.indices.len())
     }
 
     fn rows(&self) -> Vec<f64> {
@@ -108,12 +105,17 @@ impl<T: Constraint> Sample<T> {
                 }
             }
             Rows::Linear(_) => self.constraint.rows(&self.scalars, &mut rows),
+            Rows::Pairs => {
+                for (r, row) in rows.chunks_exact_mut(self.indices.len()).enumerate() {
+                    row[2 * r..2 * r + 2].copy_from_slice(&[-1.0, 1.0]);
+                }
+            }
         }
         rows
     }
 
     /// `A x`.
-    fn image(&self, x: &[DVec3]) -> Vec<DVec3> {
+    pub(super) fn image(&self, x: &[DVec3]) -> Vec<DVec3> {
         self.rows().chunks_exact(x.len()).map(|row| row.iter().zip(x).map(|(&a, &point)| a * point).sum()).collect()
     }
 
@@ -125,7 +127,7 @@ impl<T: Constraint> Sample<T> {
     }
 
     /// Points near `x` whose image is `targets`: `x + Aᵀ (A Aᵀ)⁻¹ (targets − A x)`.
-    fn lift(&self, x: &[DVec3], targets: &[DVec3]) -> Vec<DVec3> {
+    pub(super) fn lift(&self, x: &[DVec3], targets: &[DVec3]) -> Vec<DVec3> {
         if T::INFO.rows == Rows::Centred {
             return targets.to_vec();
         }
@@ -148,24 +150,18 @@ impl<T: Constraint> Sample<T> {
     }
 }
 
-fn stencil<'a>(rows: Rows, x: &'a [DVec3], indices: &'a [u32]) -> Stencil<'a> {
-    match rows {
-        Rows::Centred => Stencil::centred(x, indices),
-        Rows::Linear(_) => Stencil::absolute(x, indices),
-    }
-}
-
 /// Rest points and points of sample `seed`, as many as the type takes.
-fn points(info: &TypeInfo, seed: u64) -> (Vec<DVec3>, Vec<DVec3>, Stream) {
+pub(super) fn points(info: &TypeInfo, seed: u64) -> (Vec<DVec3>, Vec<DVec3>, Stream) {
     let mut stream = Stream(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
     stream.next();
     let most = info.greatest_indices.unwrap_or(info.least_indices + 4);
     let count = info.least_indices + (stream.next() * (most - info.least_indices + 1) as f64) as usize;
+    let count = if info.rows == Rows::Pairs { count & !1 } else { count };
     let (rest, x) = (stream.vectors(count), stream.vectors(count));
     (rest, x, stream)
 }
 
-fn squared_distance(a: &[DVec3], b: &[DVec3]) -> f64 {
+pub(super) fn squared_distance(a: &[DVec3], b: &[DVec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.distance_squared(*b)).sum()
 }
 
@@ -278,6 +274,14 @@ fn at_rest_without_violation_rows_and_projection_agree() {
     for_each_type!(law);
 }
 
+/// Turns the direction among the scalars, if there is one: its default may be fixed in space.
+fn turn_directions(info: &TypeInfo, turn: DQuat, scalars: &[f64], turned: &mut [f64]) {
+    let Scalars::Named(names) = info.scalars else { return };
+    if let Some(at) = names.iter().position(|scalar| ["nx", "dx"].contains(&scalar.name)) {
+        turned[at..at + 3].copy_from_slice(&(turn * DVec3::from_slice(&scalars[at..])).to_array());
+    }
+}
+
 #[test]
 fn projections_turn_and_scale_with_the_model() {
     fn law<T: Constraint>() {
@@ -287,7 +291,9 @@ fn projections_turn_and_scale_with_the_model() {
             let scale = 10_f64.powf(12.0 * stream.next() - 6.0);
             let sample = Sample::<T>::at_rest(&rest);
             let moved = |points: &[DVec3]| points.iter().map(|&p| scale * (turn * p + shift)).collect::<Vec<_>>();
-            let other = Sample::<T>::at_rest(&moved(&rest));
+            let mut other = Sample::<T>::at_rest(&moved(&rest));
+            turn_directions(&T::INFO, turn, &sample.scalars, &mut other.scalars);
+            other.constraint.scalars_changed(&other.scalars);
             let energy = |sample: &Sample<T>, x: &[DVec3]| {
                 0.5 * sample.constraint.measure(&sample.scalars)
                     * squared_distance(&sample.image(x), &sample.project(x))
@@ -362,7 +368,7 @@ fn project_four<T: Constraint>(
 
         fn run<S: Isa>(self, simd: S) -> Self::Output {
             let Self(samples, x) = self;
-            let stencils: [Stencil<'_>; 4] = std::array::from_fn(|i| stencil(T::INFO.rows, &x[i], &samples[i].indices));
+            let stencils: [Stencil<'_>; 4] = std::array::from_fn(|i| T::INFO.rows.stencil(&x[i], &samples[i].indices));
             let lanes: Vec<V4<S>> =
                 (0..x[0].len()).map(|j| V4::gather(simd, stencils.map(|stencil| stencil.at(j)).each_ref())).collect();
             let mut targets = vec![V4::gather(simd, [&DVec3::NAN; 4]); samples[0].row_count()];

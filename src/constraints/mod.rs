@@ -13,6 +13,8 @@ mod deformation;
 #[cfg(test)]
 mod laws;
 mod lists;
+#[cfg(test)]
+mod oracle;
 mod set;
 mod shape_fit;
 mod stencil;
@@ -35,6 +37,35 @@ pub enum Rows {
     Centred,
     /// So many rows with coefficients of their own, at most as many as points.
     Linear(usize),
+    /// One row `x_{2r+1} − x_{2r}` for each pair of consecutive points: the edges of a list. Only named, never stored.
+    Pairs,
+}
+
+impl Rows {
+    /// The number of rows of a constraint of `k` points.
+    pub const fn count(self, k: usize) -> usize {
+        match self {
+            Self::Centred => k,
+            Self::Linear(count) => count,
+            Self::Pairs => k / 2,
+        }
+    }
+
+    /// The number of coefficients that are stored for a constraint of `k` points.
+    const fn stored_count(self, k: usize) -> usize {
+        match self {
+            Self::Linear(count) => count * k,
+            Self::Centred | Self::Pairs => 0,
+        }
+    }
+
+    /// The points `indices` as a type with these rows takes them.
+    fn stencil<'a>(self, points: &'a [glam::DVec3], indices: &'a [u32]) -> Stencil<'a> {
+        match self {
+            Self::Centred => Stencil::centred(points, indices),
+            Self::Linear(_) | Self::Pairs => Stencil::absolute(points, indices),
+        }
+    }
 }
 
 /// What a type promises of its projection; the law suite holds it to that.
@@ -126,7 +157,7 @@ pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// Called when the scalars were edited, before anything else is asked.
     fn scalars_changed(&mut self, _scalars: &[f64]) {}
 
-    /// Writes the coefficients, row by row (`row_count * k`), into zeroed memory. Not called for centred types.
+    /// Writes the coefficients, row by row (`row_count * k`), into zeroed memory. Only called for [`Rows::Linear`].
     fn rows(&self, _scalars: &[f64], _coefficients: &mut [f64]) {}
 
     /// Writes the projection of `x`: one target per row.
@@ -159,15 +190,17 @@ pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
 }
 
 impl TypeInfo {
-    /// Refuses a number of indices that the type does not take.
+    /// Refuses a number of indices that the type does not take; types whose rows are pairs take even numbers only.
     ///
     /// # Errors
     /// Status `InvalidArgumentLength`.
     pub fn check_index_count(&self, count: usize) -> Result<()> {
-        if count >= self.least_indices && self.greatest_indices.is_none_or(|most| count <= most) {
+        let is_even_enough = self.rows != Rows::Pairs || count.is_multiple_of(2);
+        if is_even_enough && count >= self.least_indices && self.greatest_indices.is_none_or(|most| count <= most) {
             return Ok(());
         }
         let expected = match self.greatest_indices {
+            _ if !is_even_enough => format!("an even number of at least {}", self.least_indices),
             Some(most) if most == self.least_indices => format!("{most}"),
             Some(most) => format!("{} to {most}", self.least_indices),
             None => format!("at least {}", self.least_indices),
@@ -290,6 +323,9 @@ registry! {
     laplacian::Laplacian,
     laplacian_displacement::LaplacianDisplacement,
     angle::Angle,
+    diagonal_distance::DiagonalDistance,
+    edge_length::EdgeLength,
+    regular_polygon::RegularPolygon,
 }
 
 /// Types that are projected together where they are on the same points, in the order of the registry.
@@ -308,6 +344,14 @@ fn check_positive(name: &str, value: f64) -> Result<()> {
         return Ok(());
     }
     Err(Error::new(Status::InvalidValue, format!("expected a number above 0, found {value}")).at(name))
+}
+
+/// Refuses a number below 0; it was checked to be finite.
+fn check_not_negative(name: &str, value: f64) -> Result<()> {
+    if value >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::new(Status::InvalidValue, format!("expected a number of at least 0, found {value}")).at(name))
 }
 
 /// Refuses a range `[min, max]` that is empty or begins below 0; both ends were checked to be finite.

@@ -126,6 +126,12 @@ fn each_target(
                             }
                         }
                     }
+                    Rows::Pairs if s > 0.0 => {
+                        for (r, pair) in indices.chunks_exact(2).enumerate() {
+                            visit(pair[0], (first + r) as u32, -s);
+                            visit(pair[1], (first + r) as u32, s);
+                        }
+                    }
                     _ => {}
                 }
             }
@@ -157,10 +163,19 @@ pub(super) fn each_entry(
                     visit(mean, mean, s * k as f64);
                     mean += 1;
                 }
+                Rows::Pairs => {
+                    for pair in indices.chunks_exact(2) {
+                        let (i, j) = (pair[0], pair[1]);
+                        visit(i, i, s);
+                        visit(j, j, s);
+                        // A repeated index meets itself in both triangles.
+                        visit(i, j, if i == j { -2.0 * s } else { -s });
+                    }
+                }
                 kind => {
                     let value = |a: usize, b: usize| match kind {
                         Rows::Centred => s * (f64::from(u8::from(a == b)) - 1.0 / k as f64),
-                        Rows::Linear(_) => s * rows.chunks_exact(k).map(|row| row[a] * row[b]).sum::<f64>(),
+                        _ => s * rows.chunks_exact(k).map(|row| row[a] * row[b]).sum::<f64>(),
                     };
                     for a in 0..k {
                         visit(indices[a], indices[a], value(a, a));

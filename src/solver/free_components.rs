@@ -40,8 +40,10 @@ pub(super) fn free_components(
     for ((batch, _), stiffness) in constraints.batches().zip(stiffness) {
         for (slot, _) in stiffness.iter().enumerate().filter(|(_, s)| **s > 0.0) {
             let indices = batch.indices(slot);
-            if batch.info().rows == Rows::Centred {
-                join(&mut indices.iter().copied());
+            match batch.info().rows {
+                Rows::Centred => join(&mut indices.iter().copied()),
+                Rows::Pairs => indices.chunks_exact(2).for_each(|pair| join(&mut pair.iter().copied())),
+                Rows::Linear(_) => {}
             }
             for row in batch.rows(slot).chunks_exact(indices.len()) {
                 let touched = || indices.iter().zip(row).filter(|(_, a)| **a != 0.0).map(|(&i, _)| i);

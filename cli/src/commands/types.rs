@@ -77,6 +77,7 @@ fn projection(info: &TypeInfo) -> &'static str {
 fn explained(info: &TypeInfo) -> String {
     let rows = match info.rows {
         Rows::Centred => "points relative to their mean".to_owned(),
+        Rows::Pairs => "1 row for each pair of points".to_owned(),
         Rows::Linear(1) => "1 row".to_owned(),
         Rows::Linear(count) => format!("{count} rows"),
     };
