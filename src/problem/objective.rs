@@ -53,7 +53,7 @@ impl Default for Objective {
             fairness_weight: 1.0,
             fairness: Fairness::Laplacian,
             polylines: Vec::new(),
-            tolerance: 1e-10,
+            tolerance: 1e-12,
         }
     }
 }
