@@ -341,7 +341,7 @@ fn quad(corners: [[f64; 3]; 4]) -> Vec<DVec3> {
 }
 
 #[test]
-fn oracle_finds_no_degenerate_input_that_is_not_projected() {
+fn degenerate_input_is_projected_into_the_set() {
     stays_finite::<super::diagonal_distance::DiagonalDistance>(
         4,
         &[&[], &[0.0], &[0.1]],
