@@ -59,9 +59,7 @@ impl<T: Constraint> Sample<T> {
             sample.constraints.push(constraint);
             sample.scalars.push(scalars);
         }
-        if let Rows::Linear(row_count) = info.rows {
-            sample.row_count = row_count;
-        }
+        sample.row_count = info.rows.count(k);
         sample
     }
 }
@@ -69,7 +67,7 @@ impl<T: Constraint> Sample<T> {
 fn stencil<'a, T: Constraint>(points: &'a [DVec3], indices: &'a [u32]) -> Stencil<'a> {
     match T::INFO.rows {
         Rows::Centred => Stencil::centred(points, indices),
-        Rows::Linear(_) => Stencil::absolute(points, indices),
+        Rows::Linear(_) | Rows::Pairs => Stencil::absolute(points, indices),
     }
 }
 
@@ -77,15 +75,23 @@ fn stencil<'a, T: Constraint>(points: &'a [DVec3], indices: &'a [u32]) -> Stenci
     constraints::angle::Angle,
     constraints::area::Area,
     constraints::bending::Bending,
+    constraints::bounded_angle::BoundedAngle,
     constraints::circle::Circle,
     constraints::closeness::Closeness,
+    constraints::diagonal_distance::DiagonalDistance,
+    constraints::edge_length::EdgeLength,
     constraints::edge_strain::EdgeStrain,
+    constraints::equal_lengths::EqualLengths,
     constraints::laplacian::Laplacian,
     constraints::laplacian_displacement::LaplacianDisplacement,
     constraints::line::Line,
+    constraints::on_line::OnLine,
+    constraints::on_plane::OnPlane,
+    constraints::orientation::Orientation,
     constraints::parallelogram::Parallelogram,
     constraints::plane::Plane,
     constraints::rectangle::Rectangle,
+    constraints::regular_polygon::RegularPolygon,
     constraints::rigid::Rigid,
     constraints::similarity::Similarity,
     constraints::sphere::Sphere,
@@ -148,11 +154,17 @@ impl<T: Constraint> LaneKernel for ByFours<'_, T> {
     constraints::angle::Angle,
     constraints::area::Area,
     constraints::bending::Bending,
+    constraints::bounded_angle::BoundedAngle,
     constraints::circle::Circle,
+    constraints::diagonal_distance::DiagonalDistance,
+    constraints::edge_length::EdgeLength,
     constraints::edge_strain::EdgeStrain,
+    constraints::equal_lengths::EqualLengths,
+    constraints::orientation::Orientation,
     constraints::parallelogram::Parallelogram,
     constraints::plane::Plane,
     constraints::rectangle::Rectangle,
+    constraints::regular_polygon::RegularPolygon,
     constraints::rigid::Rigid,
     constraints::similarity::Similarity,
     constraints::tetrahedron_strain::TetrahedronStrain,

@@ -75,7 +75,12 @@ fn scalars_for(info: &TypeInfo, stream: &mut Stream) -> Option<Vec<f64>> {
     match info.name {
         "TriangleStrain" | "TetrahedronStrain" | "Area" | "Volume" => Some(vec![low, high]),
         "EdgeStrain" => Some(vec![0.9 + 0.3 * stream.next(), low, high]),
-        "Angle" => Some(vec![low, 1.5 + 0.5 * high]),
+        "Angle" | "BoundedAngle" => Some(vec![low, 1.5 + 0.5 * high]),
+        // A point of the lattice and a direction.
+        "OnPlane" | "OnLine" => {
+            let (point, direction) = (2.0 * DVec3::ONE + stream.vector(), stream.vector());
+            Some([point, direction].iter().flat_map(DVec3::to_array).collect())
+        }
         _ => None,
     }
 }
@@ -136,7 +141,16 @@ impl Model {
 
     fn moved(&self, rotation: DQuat, shift: DVec3) -> Self {
         let all = |points: &[DVec3]| points.iter().map(|point| rotation * *point + shift).collect();
-        Self { rest: all(&self.rest), points: all(&self.points), force: rotation * self.force, ..self.clone() }
+        let mut moved =
+            Self { rest: all(&self.rest), points: all(&self.points), force: rotation * self.force, ..self.clone() };
+        for stated in &mut moved.constraints {
+            if let ("OnPlane" | "OnLine", Some(scalars)) = (stated.info.name, &mut stated.scalars) {
+                let (point, direction) = (DVec3::from_slice(scalars), DVec3::from_slice(&scalars[3..]));
+                let there = [rotation * point + shift, rotation * direction];
+                *scalars = there.iter().flat_map(DVec3::to_array).collect();
+            }
+        }
+        moved
     }
 
     /// The same model `s` times as large, with the weights that keep its balance.
@@ -146,8 +160,10 @@ impl Model {
             Self { rest: all(&self.rest), points: all(&self.points), force: s * self.force, ..self.clone() };
         for stated in &mut scaled.constraints {
             stated.weight *= s.powi(2 - stated.info.energy_scale_power);
-            if let ("EdgeStrain", Some(scalars)) = (stated.info.name, &mut stated.scalars) {
-                scalars[0] *= s;
+            match (stated.info.name, &mut stated.scalars) {
+                ("EdgeStrain", Some(scalars)) => scalars[0] *= s,
+                ("OnPlane" | "OnLine", Some(scalars)) => scalars[..3].iter_mut().for_each(|scalar| *scalar *= s),
+                _ => {}
             }
         }
         scaled

@@ -232,6 +232,49 @@ fn long_constraints_through_their_mean_equal_the_dense_rows() {
     assert!(worst < 1e-12, "differs by {worst:.1e}");
 }
 
+/// Rows by pairs: after one iteration the gradient of the quadratic energy, with the targets of the points before, vanishes. Edges
+/// share points, one is there twice, and one goes from a point to itself.
+#[test]
+fn edges_of_a_list_are_rows_of_the_system() {
+    let points = bumpy(4, 5);
+    let edges: &[u32] = &[0, 1, 1, 2, 2, 0, 2, 3, 5, 5, 2, 3, 3, 4, 4, 9, 7, 8];
+    let mut solver = Solver::new();
+    solver.set_points(&points).unwrap();
+    solver.add_constraint("EqualLengths", edges, 0.7).unwrap();
+    for i in 0..points.len() as u32 {
+        solver.add_constraint("Closeness", &[i], 0.1).unwrap();
+    }
+    solver.init().unwrap();
+    solver.solve(1).unwrap();
+    let pairs = || edges.chunks_exact(2).map(|pair| [pair[0] as usize, pair[1] as usize]);
+    let before: Vec<DVec3> = pairs().map(|[i, j]| points[j] - points[i]).collect();
+    let mean = before.iter().map(|edge| edge.length()).sum::<f64>() / before.len() as f64;
+    let now = solver.points();
+    let mut gradient: Vec<DVec3> = now.iter().zip(&points).map(|(x, rest)| 0.1 * (*x - *rest)).collect();
+    for ([i, j], edge) in pairs().zip(before) {
+        let residual = 0.7 * (now[j] - now[i] - mean * edge.try_normalize().unwrap_or(DVec3::X));
+        gradient[j] += residual;
+        gradient[i] -= residual;
+    }
+    assert!(gradient.iter().all(|gradient| gradient.length() < 1e-14), "{gradient:?}");
+}
+
+#[test]
+fn a_triangle_alone_with_equal_lengths_becomes_equilateral() {
+    let mut solver = solver(&[[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [1.0, 1.0, 1.0]]);
+    solver.add_constraint("EqualLengths", &[0, 1, 1, 2, 2, 0], 1.0).unwrap();
+    let mean = solver.points().iter().sum::<DVec3>() / 3.0;
+    solver.init().unwrap();
+    solver.solve(200).unwrap();
+    let [a, b, c] = *solver.points() else { panic!() };
+    let lengths = [a.distance(b), b.distance(c), c.distance(a)];
+    assert!(lengths[0] > 1.0 && lengths.iter().all(|length| (length - lengths[0]).abs() < 1e-12), "{lengths:?}");
+    assert!(((a + b + c) / 3.0 - mean).length() < 1e-14);
+    assert!(solver.violations()[0] < 1e-12);
+    let error = solver.add_constraint("EqualLengths", &[0, 1, 1, 2, 2], 1.0).unwrap_err();
+    assert!(error.to_string().contains("an even number of at least 4"), "{error}");
+}
+
 fn planar_grid(n: u32) -> Solver {
     let mut solver = Solver::new();
     solver.set_points(&bumpy(n as usize, 7)).unwrap();

@@ -32,9 +32,9 @@ const LEAST_COSINE: f64 = 0.05;
 #[derive(Clone, Debug)]
 pub struct Angle {
     /// Cosine and sine of the least angle.
-    min: [f64; 2],
+    pub(super) min: [f64; 2],
     /// Cosine and sine of the greatest angle.
-    max: [f64; 2],
+    pub(super) max: [f64; 2],
 }
 
 /// The foot of `edge` on the direction that lies by `turn` from it towards the unit vector `across`, which is orthogonal to it.
@@ -44,8 +44,59 @@ fn turned(edge: DVec3, across: DVec3, turn: f64) -> DVec3 {
 }
 
 /// The angle between two vectors in rad, accurate also near 0 and π; 0 if one has no length.
-fn angle_between(e: DVec3, f: DVec3) -> f64 {
+pub(super) fn angle_between(e: DVec3, f: DVec3) -> f64 {
     e.cross(f).length().atan2(e.dot(f))
+}
+
+/// As [`Angle::project`], by cosines and sines alone, those of the least and the greatest angles in `bounds`: those of the
+/// correction `η` from those of the angle and of its bound, those of `θ` by halving the angle whose tangent is given. Corrections
+/// whose cosine is below `least_cosine` are not done.
+#[inline(always)]
+pub(super) fn turned_four<S: Isa>(
+    simd: S,
+    bounds: [[F4<S>; 2]; 2],
+    least_cosine: f64,
+    x: &[V4<S>],
+    targets: &mut [V4<S>],
+) -> Mask<S> {
+    let [min, max] = bounds;
+    let [zero, half, one] = [0.0, 0.5, 1.0].map(|value| F4::splat(simd, value));
+    let (e, f) = (x[1] - x[0], x[2] - x[0]);
+    let (ee, ff) = (e.dot(e), f.dot(f));
+    let normal = e.cross(f);
+    let product = (ee * ff).sqrt();
+    let per_product = one / product;
+    let cos = e.dot(f) * per_product;
+    let sin = normal.dot(normal).sqrt() * per_product;
+    let bound = |i: usize, large: F4<S>| large.where_above(zero, max[i], min[i]);
+    // Positive where the angle is too large, or where it is too small; the bounds are in [0, π], where the cosine falls.
+    let large = max[0] - cos;
+    let small = cos - min[0];
+    let (bound_cos, bound_sin) = (bound(0, large), bound(1, large));
+    let eta_cos = cos.mul_add(bound_cos, sin * bound_sin);
+    // Signed: below 0 where the edges turn away from each other.
+    let eta_sin = sin.mul_add(bound_cos, -(cos * bound_sin));
+    let ratio = ff / ee;
+    let double_sin = (eta_sin + eta_sin) * eta_cos;
+    let double_cos = one - (eta_sin + eta_sin) * eta_sin;
+    let (opposite, adjacent) = (ratio * double_sin, ratio.mul_add(double_cos, one));
+    let hypotenuse = opposite.mul_add(opposite, adjacent * adjacent).sqrt();
+    let half_per_hypotenuse = half / hypotenuse;
+    let theta_cos = (half + adjacent * half_per_hypotenuse).sqrt();
+    let theta_sin = opposite * half_per_hypotenuse / theta_cos;
+    let phi_cos = eta_cos.mul_add(theta_cos, eta_sin * theta_sin);
+    let phi_sin = eta_sin.mul_add(theta_cos, -(eta_cos * theta_sin));
+    let is_off = large.max(small);
+    // The foot of an edge `l u` on its new direction: l cos (cos u + sin across), `across` = (other's unit − cos u)/sin.
+    let per_sin = one / sin;
+    let turns = [(e, f, ee, theta_cos, theta_sin), (f, e, ff, phi_cos, phi_sin)];
+    for (target, (edge, other, squared, turn_cos, turn_sin)) in targets.iter_mut().zip(turns) {
+        let along = turn_cos * (turn_cos - turn_sin * (cos * per_sin));
+        let moved = edge.mul_add(along, other * (turn_cos * turn_sin * (squared * per_product) * per_sin));
+        *target = V4::where_above(is_off, zero, moved, edge);
+    }
+    let is_safe = eta_cos.above(F4::splat(simd, least_cosine)) & (sin * sin).above(F4::splat(simd, LEAST_SQUARED_SINE));
+    is_safe & product.above(F4::splat(simd, f64::MIN_POSITIVE)) & F4::splat(simd, f64::MAX).above(product)
 }
 
 impl Constraint for Angle {
@@ -123,49 +174,11 @@ impl Constraint for Angle {
         true
     }
 
-    /// As [`Self::project`], by cosines and sines alone: those of the correction `η` from those of the angle and of its bound, those
-    /// of `θ` by halving the angle whose tangent is given.
     #[inline(always)]
     fn project_four<S: Isa>(four: Four<'_, Self, S>, x: &[V4<S>], targets: &mut [V4<S>]) -> Mask<S> {
-        let [zero, half, one] = [0.0, 0.5, 1.0].map(|value| four.splat(value));
-        let (e, f) = (x[1] - x[0], x[2] - x[0]);
-        let (ee, ff) = (e.dot(e), f.dot(f));
-        let normal = e.cross(f);
-        let product = (ee * ff).sqrt();
-        let per_product = one / product;
-        let cos = e.dot(f) * per_product;
-        let sin = normal.dot(normal).sqrt() * per_product;
-        let bound = |i: usize, large: F4<S>| {
-            large.where_above(zero, four.rest(|angle| angle.max[i]), four.rest(|angle| angle.min[i]))
-        };
-        // Positive where the angle is too large, or where it is too small; the bounds are in [0, π], where the cosine falls.
-        let large = four.rest(|angle| angle.max[0]) - cos;
-        let small = cos - four.rest(|angle| angle.min[0]);
-        let (bound_cos, bound_sin) = (bound(0, large), bound(1, large));
-        let eta_cos = cos.mul_add(bound_cos, sin * bound_sin);
-        // Signed: below 0 where the edges turn away from each other.
-        let eta_sin = sin.mul_add(bound_cos, -(cos * bound_sin));
-        let ratio = ff / ee;
-        let double_sin = (eta_sin + eta_sin) * eta_cos;
-        let double_cos = one - (eta_sin + eta_sin) * eta_sin;
-        let (opposite, adjacent) = (ratio * double_sin, ratio.mul_add(double_cos, one));
-        let hypotenuse = opposite.mul_add(opposite, adjacent * adjacent).sqrt();
-        let half_per_hypotenuse = half / hypotenuse;
-        let theta_cos = (half + adjacent * half_per_hypotenuse).sqrt();
-        let theta_sin = opposite * half_per_hypotenuse / theta_cos;
-        let phi_cos = eta_cos.mul_add(theta_cos, eta_sin * theta_sin);
-        let phi_sin = eta_sin.mul_add(theta_cos, -(eta_cos * theta_sin));
-        let is_off = large.max(small);
-        // The foot of an edge `l u` on its new direction: l cos (cos u + sin across), `across` = (other's unit − cos u)/sin.
-        let per_sin = one / sin;
-        let turns = [(e, f, ee, theta_cos, theta_sin), (f, e, ff, phi_cos, phi_sin)];
-        for (target, (edge, other, squared, turn_cos, turn_sin)) in targets.iter_mut().zip(turns) {
-            let along = turn_cos * (turn_cos - turn_sin * (cos * per_sin));
-            let moved = edge.mul_add(along, other * (turn_cos * turn_sin * (squared * per_product) * per_sin));
-            *target = V4::where_above(is_off, zero, moved, edge);
-        }
-        let is_safe = eta_cos.above(four.splat(LEAST_COSINE)) & (sin * sin).above(four.splat(LEAST_SQUARED_SINE));
-        is_safe & product.above(four.splat(f64::MIN_POSITIVE)) & four.splat(f64::MAX).above(product)
+        let min = [0, 1].map(|i| four.rest(|angle| angle.min[i]));
+        let max = [0, 1].map(|i| four.rest(|angle| angle.max[i]));
+        turned_four(four.simd, [min, max], LEAST_COSINE, x, targets)
     }
 
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64 {

@@ -236,6 +236,12 @@ impl<'a, T, S: Isa> Four<'a, T, S> {
         F4::new(self.simd, self.scalars.map(|scalars| scalars[i]))
     }
 
+    /// The rest states.
+    #[inline(always)]
+    pub fn rests(&self) -> [&'a T; 4] {
+        self.constraints
+    }
+
     /// A number of each rest state.
     #[inline(always)]
     pub fn rest(&self, number: impl Fn(&T) -> f64) -> F4<S> {

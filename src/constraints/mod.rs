@@ -326,6 +326,11 @@ registry! {
     diagonal_distance::DiagonalDistance,
     edge_length::EdgeLength,
     regular_polygon::RegularPolygon,
+    bounded_angle::BoundedAngle,
+    on_plane::OnPlane,
+    on_line::OnLine,
+    equal_lengths::EqualLengths,
+    orientation::Orientation,
 }
 
 /// Types that are projected together where they are on the same points, in the order of the registry.
@@ -352,6 +357,21 @@ fn check_not_negative(name: &str, value: f64) -> Result<()> {
         return Ok(());
     }
     Err(Error::new(Status::InvalidValue, format!("expected a number of at least 0, found {value}")).at(name))
+}
+
+/// The unit vector along three scalars, tiny and huge ones too; `None` if all are 0.
+fn unit_vector(scalars: &[f64]) -> Option<glam::DVec3> {
+    let vector = glam::DVec3::from_slice(scalars);
+    (vector / vector.abs().max_element()).try_normalize()
+}
+
+/// Refuses three scalars that are no direction; they were checked to be finite.
+fn check_direction(name: &str, scalars: &[f64]) -> Result<()> {
+    if unit_vector(scalars).is_some() {
+        return Ok(());
+    }
+    let reason = format!("expected a direction, three numbers not all 0, found {scalars:?}");
+    Err(Error::new(Status::InvalidValue, reason).at(name))
 }
 
 /// Refuses a range `[min, max]` that is empty or begins below 0; both ends were checked to be finite.

@@ -209,6 +209,87 @@ fn regular_polygon() {
     );
 }
 
+#[test]
+fn bounded_angle() {
+    use super::bounded_angle::BoundedAngle;
+    compare::<BoundedAngle>(
+        |sample, x, stream| {
+            // Corrections of up to 75°, from either side.
+            let angle = (x[1] - x[0]).angle_between(x[2] - x[0]);
+            let (correction, slack) = (75_f64.to_radians() * stream.next(), 0.5 * stream.next());
+            let range = if stream.next() < 0.5 {
+                [angle - correction - slack, angle - correction]
+            } else {
+                [angle + correction, angle + correction + slack]
+            };
+            // Where that leaves [0, π] there may be no violation; such samples are passed over.
+            sample.scalars = range.map(|bound| bound.clamp(0.0, PI)).to_vec();
+        },
+        |_| 6,
+        |sample, p, found| {
+            let [min, max] = [sample.scalars[0], sample.scalars[1]];
+            let (sin, cos) = (min + (max - min) * p[5].sin().powi(2)).sin_cos();
+            let turn = DQuat::from_scaled_axis(3.0 * vector(p, 0));
+            found[0] = p[3] * p[3] * (turn * DVec3::X);
+            found[1] = p[4] * p[4] * (turn * DVec3::new(cos, sin, 0.0));
+        },
+    );
+}
+
+/// A point and a direction other than the defaults.
+fn anywhere<T>(sample: &mut Sample<T>, _: &[DVec3], stream: &mut Stream) {
+    sample.scalars = [stream.vector(), 3.0 * stream.vector()].iter().flat_map(DVec3::to_array).collect();
+}
+
+#[test]
+fn on_plane() {
+    compare::<super::on_plane::OnPlane>(
+        anywhere,
+        |_| 2,
+        |sample, p, found| {
+            let (u, v) = unit(&sample.scalars, 3).any_orthonormal_pair();
+            found[0] = vector(&sample.scalars, 0) + p[0] * u + p[1] * v;
+        },
+    );
+}
+
+#[test]
+fn on_line() {
+    compare::<super::on_line::OnLine>(
+        anywhere,
+        |_| 1,
+        |sample, p, found| found[0] = vector(&sample.scalars, 0) + p[0] * vector(&sample.scalars, 3),
+    );
+}
+
+#[test]
+fn equal_lengths() {
+    compare::<super::equal_lengths::EqualLengths>(
+        |_, _, _| {},
+        |k| 1 + 3 * (k / 2),
+        |_, p, found| {
+            for (i, found) in found.iter_mut().enumerate() {
+                *found = p[0] * unit(p, 1 + 3 * i);
+            }
+        },
+    );
+}
+
+#[test]
+fn orientation() {
+    compare::<super::orientation::Orientation>(
+        |sample, _, stream| sample.scalars = (3.0 * stream.vector()).to_array().to_vec(),
+        |k| 1 + 2 * k,
+        |sample, p, found| {
+            let n = unit(&sample.scalars, 0);
+            let (u, v) = n.any_orthonormal_pair();
+            for (i, found) in found.iter_mut().enumerate() {
+                *found = p[0] * n + p[2 * i + 1] * u + p[2 * i + 2] * v;
+            }
+        },
+    );
+}
+
 /// Configurations that say little or nothing, for types of `k` points: coincident, collinear, repeated, flat.
 fn degenerate(k: usize) -> Vec<Vec<DVec3>> {
     let (a, b, c) = (DVec3::new(0.3, -0.7, 0.2), DVec3::new(0.4, 0.1, -0.3), DVec3::new(-0.1, 0.5, 0.6));
@@ -260,7 +341,7 @@ fn quad(corners: [[f64; 3]; 4]) -> Vec<DVec3> {
 }
 
 #[test]
-fn oracle_finds_no_degenerate_input_that_is_not_projected() {
+fn degenerate_input_is_projected_into_the_set() {
     stays_finite::<super::diagonal_distance::DiagonalDistance>(
         4,
         &[&[], &[0.0], &[0.1]],
@@ -278,4 +359,25 @@ fn oracle_finds_no_degenerate_input_that_is_not_projected() {
     for k in [3, 4, 6] {
         stays_finite::<super::regular_polygon::RegularPolygon>(k, &[&[]], &[]);
     }
+    stays_finite::<super::bounded_angle::BoundedAngle>(
+        3,
+        &[&[], &[0.5, 1.0], &[2.0, 2.5], &[0.0, 0.0], &[PI, PI], &[0.1, 0.1]],
+        &[
+            // Edges along one line, the same way and opposed; nearly so; of no length; corrections beyond a right angle.
+            [DVec3::ZERO, DVec3::X, 2.0 * DVec3::X].to_vec(),
+            [DVec3::ZERO, DVec3::X, -2.0 * DVec3::X].to_vec(),
+            [DVec3::ZERO, DVec3::X, DVec3::new(2.0, 1e-9, 0.0)].to_vec(),
+            [DVec3::ZERO, DVec3::X, DVec3::new(-2.0, 0.0, 1e-7)].to_vec(),
+            [DVec3::ONE, DVec3::ONE, DVec3::X].to_vec(),
+            [DVec3::ZERO, DVec3::X, DVec3::new(-1.0, 0.1, 0.0)].to_vec(),
+            [DVec3::ZERO, 1e-5 * DVec3::X, DVec3::new(-1.0, 0.1, 0.0)].to_vec(),
+        ],
+    );
+    let directions: &[&[f64]] = &[&[], &[1.0, 2.0, 3.0, 1e-200, 0.0, 0.0], &[0.0, 0.0, 0.0, 1e200, -1e200, 1e200]];
+    stays_finite::<super::on_plane::OnPlane>(1, directions, &[]);
+    stays_finite::<super::on_line::OnLine>(1, directions, &[]);
+    for k in [4, 6, 10] {
+        stays_finite::<super::equal_lengths::EqualLengths>(k, &[&[]], &[]);
+    }
+    stays_finite::<super::orientation::Orientation>(4, &[&[], &[1e-200, 0.0, 0.0], &[1.0, 1.0, 0.0]], &[]);
 }

@@ -2,7 +2,7 @@
 //!
 //! Set: all configurations on some plane. Rows: centred. Projection: onto the plane through the mean whose normal is the
 //! eigenvector of the least eigenvalue of the scatter `Σ x xᵀ`; nearest. Points on a line are on a plane already: whatever
-//! the eigenvector, they stay. Violation: the largest distance of a point from the best-fit plane, in model units.
+//! the eigenvector, they stay. Signatures may call it PlanarPolygon. Violation: the largest distance of a point from the best-fit plane, in model units.
 //! Sources: Bouaziz et al. 2012, section 3; Deuss et al. 2015, Table 1.
 
 use glam::DVec3;
@@ -13,6 +13,8 @@ use crate::linalg::simd::Isa;
 use crate::linalg::small::{least_eigenvector, scatter};
 
 /// One Plane constraint; it has no rest state.
+///
+/// For the corners of a face that is a planar polygon, of any number of them; "PlanarPolygon" is another name of the type.
 #[derive(Clone, Debug)]
 pub struct Plane;
 
@@ -30,6 +32,8 @@ impl Constraint for Plane {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const ALIAS: Option<&'static str> = Some("PlanarPolygon");
 
     fn at_rest(_x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self
@@ -60,6 +64,12 @@ impl Constraint for Plane {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_planar_polygon_is_another_name() {
+        let found = super::super::TypeIndex::named("PlanarPolygon").unwrap();
+        assert_eq!(found.info().name, "Plane");
+    }
 
     #[test]
     fn a_warped_square_is_flattened_between_its_corners() {

@@ -166,6 +166,7 @@ fn fitting() -> impl Strategy<Value = (Option<CString>, Array<c_int>)> {
     let types: Vec<_> = shapeop::constraints::types().collect();
     (prop::sample::select(types), 0..3_usize, prop::collection::vec(0..MOST_POINTS as c_int, 8)).prop_map(
         |(info, more, indices)| {
+            let more = if info.rows == shapeop::constraints::Rows::Pairs { 2 * more } else { more };
             let count = (info.least_indices + more).min(info.greatest_indices.unwrap_or(usize::MAX));
             (Some(CString::new(info.name).unwrap()), Array::Right(indices[..count].to_vec()))
         },
