@@ -17,13 +17,14 @@ const MAX_CELLS: usize = 1 << 22;
 const CORNERS: [[i64; 2]; 6] = [[1, 0], [0, 1], [-1, 1], [-1, 0], [0, -1], [1, -1]];
 
 /// Quads over the rectangle `x[0]..x[1]` times `y[0]..y[1]`, their vertices at `z = height(x, y)`: `columns * rows`
-/// vertices, evenly spaced with the ends included, and `(columns - 1) * (rows - 1)` faces, row by row; all in model units.
+/// vertices, evenly spaced with the ends included, and `(columns - 1) * (rows - 1)` faces, row by row; all in model
+/// units.
 ///
 /// Vertex `row * columns + column`; a face is its corner of least x and y, then the next along x.
 ///
 /// # Errors
-/// `columns` or `rows` below 2, or too many; an end that is not finite or not above the other; a height that is not finite
-/// (its place is that of the point).
+/// `columns` or `rows` below 2, or too many; an end that is not finite or not above the other; a height that is not
+/// finite (its place is that of the point).
 pub fn height_field(
     columns: usize,
     rows: usize,
@@ -56,8 +57,9 @@ pub fn height_field(
     Ok(mesh)
 }
 
-/// `n × n` vertices of the translation surface `p(u, v) = (n/2) (u, v, 0.35 (cos 1.2u + cos 1.5v))`, u and v evenly spaced
-/// over `[−1, 1]`: the mesh on which `benches/peers` compares solvers of hard constraints. Order as in [`height_field`].
+/// `n × n` vertices of the translation surface `p(u, v) = (n/2) (u, v, 0.35 (cos 1.2u + cos 1.5v))`, u and v evenly
+/// spaced over `[−1, 1]`: the mesh on which `benches/peers` compares solvers of hard constraints. Order as in
+/// [`height_field`].
 ///
 /// A sum of a curve in u and one in v, so that every face is a parallelogram and planar. Edges are about 1 long.
 ///
@@ -78,7 +80,8 @@ pub fn translation_surface(n: usize) -> Result<Mesh> {
 /// lie between three of these hexagons. Faces: the hexagons row by row, then the triangles row by row.
 ///
 /// # Errors
-/// `columns` or `rows` below 2 (hexagons of one row meet at points only), or too many; `edge` not above 0, or not finite.
+/// `columns` or `rows` below 2 (hexagons of one row meet at points only), or too many; `edge` not above 0, or not
+/// finite.
 pub fn tri_hex(columns: usize, rows: usize, edge: f64) -> Result<Mesh> {
     check_counts(columns, rows, 2)?;
     check_length(edge)?;
@@ -99,19 +102,19 @@ pub fn tri_hex(columns: usize, rows: usize, edge: f64) -> Result<Mesh> {
     on_lattice(&faces, edge, |_| 0.0)
 }
 
-/// Rhombi of side `edge`: the rhombille tiling (hexagons cut into three), or lifted, the surface of stacked cubes. Three
-/// rhombi meet inside every hexagon and, in turn, six and three at its corners.
+/// Rhombi of side `edge`: the rhombille tiling (hexagons cut into three), or lifted, the surface of stacked cubes.
+/// Three rhombi meet inside every hexagon and, in turn, six and three at its corners.
 ///
-/// `columns` columns of `rows` hexagons. At `lift` 0 the mesh is flat, with corner angles of 60 and 120 degrees; at 1 the
-/// faces are squares, three at every vertex of valence three as on a cube; towards √3 they become upright slivers. Faces
-/// are planar and sides `edge` long throughout. Faces: the hexagons column by column, three quads each, which begin at the
-/// hexagon's center.
+/// `columns` columns of `rows` hexagons. At `lift` 0 the mesh is flat, with corner angles of 60 and 120 degrees; at 1
+/// the faces are squares, three at every vertex of valence three as on a cube; towards √3 they become upright slivers.
+/// Faces are planar and sides `edge` long throughout. Faces: the hexagons column by column, three quads each, which
+/// begin at the hexagon's center.
 ///
 /// This is how we read the mesh of Fig. 10 of Deng et al. 2015, "a quad mesh with valence three for all interior
 /// vertices", where regular faces "induce a cube-like pattern across the surface". To the letter, no such mesh covers a
-/// surface: where neighbouring interior vertices have three quads each, these close up as one cube, of six faces. What has
-/// corners of cubes all over are these hexagons, whose one interior vertex has valence three; with two thirds of all
-/// interior vertices of valence three, the others have valence six, as the mean is four.
+/// surface: where neighbouring interior vertices have three quads each, these close up as one cube, of six faces. What
+/// has corners of cubes all over are these hexagons, whose one interior vertex has valence three; with two thirds of
+/// all interior vertices of valence three, the others have valence six, as the mean is four.
 ///
 /// # Errors
 /// `columns` or `rows` of 0, or too many; `edge` not above 0; `lift` below 0 or not below √3; either not finite.
