@@ -8,6 +8,7 @@ pub mod fit;
 pub mod measure;
 mod obj;
 mod off;
+pub mod patterns;
 mod ply;
 mod topology;
 
