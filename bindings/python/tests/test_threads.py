@@ -110,6 +110,8 @@ def test_ctrl_c_ends_a_solve_without_a_word(progress: str) -> None:
     # Its own process, as the signal must not reach the tests; the thread waits for the solve to be under way.
     program = f"""
 import os, signal, sys, threading, time
+# Whoever started the tests may have had it ignored, as shells do for what runs in the background.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.path.insert(0, {str(Path(__file__).parent)!r})
 from samples import sheet
 solver = sheet(60)
