@@ -1,21 +1,22 @@
 //! BoundedAngle: the angle at a point between the directions to two others stays within a range, for any correction.
 //!
-//! Set: edges `e₁ = x₁ − x₀`, `e₂ = x₂ − x₀` with `min ≤ ∠(e₁, e₂) ≤ max`. Rows: the two edges. Both edges turn in their plane,
-//! towards each other or away, by `θ` and `η − θ`, `η` being the correction. As long as `η` is at most 75° the projection is the
-//! nearest element: with `a = ‖e₁‖²`, `b = ‖e₂‖²`, `θ = ½ atan2(b sin 2η, a + b cos 2η)`, and each edge becomes its foot on its new
-//! direction, `cos θ` and `cos(η − θ)` of its length. Towards a right angle the nearest element collapses the shorter edge, which is
-//! of no use to a design. From 85° on edges keep their lengths, and `θ = η b/(a + b)`: the correction is split by the inverse
-//! squared lengths. Between 75° and 85° the angle `θ` and the factors on the lengths go over from one to the other smoothly, so
-//! the projection is continuous; the bound is met exactly everywhere. It is feasible, and nearest up to 75°: beyond, plain
-//! iterations can raise the energy.
+//! Set: edges `e₁ = x₁ − x₀`, `e₂ = x₂ − x₀` with `min ≤ ∠(e₁, e₂) ≤ max`. Rows: the two edges. Both edges turn in
+//! their plane, towards each other or away, by `θ` and `η − θ`, `η` being the correction. As long as `η` is at most 75°
+//! the projection is the nearest element: with `a = ‖e₁‖²`, `b = ‖e₂‖²`, `θ = ½ atan2(b sin 2η, a + b cos 2η)`, and
+//! each edge becomes its foot on its new direction, `cos θ` and `cos(η − θ)` of its length. Towards a right angle the
+//! nearest element collapses the shorter edge, which is of no use to a design. From 85° on edges keep their lengths,
+//! and `θ = η b/(a + b)`: the correction is split by the inverse squared lengths. Between 75° and 85° the angle `θ` and
+//! the factors on the lengths go over from one to the other smoothly, so the projection is continuous; the bound is met
+//! exactly everywhere. It is feasible, and nearest up to 75°: beyond, plain iterations can raise the energy.
 //!
-//! Edges along one line span no plane: they turn in the one that they had at creation, tilted as little as needed to contain the
-//! line, and to the sides that they had. That turns with the model if creation does. If they were along a line then too, the plane
-//! is an arbitrary one through the line. An edge of no length has every angle. Scalars: `min_rad`, `max_rad` (0, π), within
-//! `[0, π]`. Violation: the distance of the angle from the range in rad. Nothing can degenerate.
+//! Edges along one line span no plane: they turn in the one that they had at creation, tilted as little as needed to
+//! contain the line, and to the sides that they had. That turns with the model if creation does. If they were along a
+//! line then too, the plane is an arbitrary one through the line. An edge of no length has every angle. Scalars:
+//! `min_rad`, `max_rad` (0, π), within `[0, π]`. Violation: the distance of the angle from the range in rad. Nothing
+//! can degenerate.
 //!
-//! Angle projects as libShapeOp does, with the collapse and without a plane for edges along one line. Source: Deng et al. 2015,
-//! section 3.3.2, up to 75°, with atan2 for the paper's arctan, which is wrong where `a + b cos 2η < 0`.
+//! Angle projects as libShapeOp does, with the collapse and without a plane for edges along one line. Source: Deng et
+//! al. 2015, section 3.3.2, up to 75°, with atan2 for the paper's arctan, which is wrong where `a + b cos 2η < 0`.
 
 use glam::DVec3;
 
@@ -32,7 +33,8 @@ const COLLINEAR: f64 = 1e-8;
 /// The correction in rad up to which the nearest element is taken: 75°.
 const NEAREST: f64 = 75.0 * RADIANS;
 
-/// The correction in rad from which on edges keep their lengths: 85°, short of the right angle where the nearest element jumps.
+/// The correction in rad from which on edges keep their lengths: 85°, short of the right angle where the nearest
+/// element jumps.
 const KEEPING: f64 = 85.0 * RADIANS;
 
 const RADIANS: f64 = std::f64::consts::PI / 180.0;
@@ -63,7 +65,8 @@ impl BoundedAngle {
     }
 }
 
-/// The turn of the first of two edges of these squared lengths, and the factors on both lengths, for a correction `eta`.
+/// The turn of the first of two edges of these squared lengths, and the factors on both lengths, for a correction
+/// `eta`.
 fn shares(a: f64, b: f64, eta: f64) -> (f64, [f64; 2]) {
     let kept = ((eta - NEAREST) / (KEEPING - NEAREST)).clamp(0.0, 1.0);
     let kept = kept * kept * (3.0 - 2.0 * kept);
@@ -199,8 +202,8 @@ mod tests {
         );
     }
 
-    /// Steps of the angle by 1e-4 rad through all corrections move the targets by about as much, across both switches too, and the
-    /// bound is met on the way.
+    /// Steps of the angle by 1e-4 rad through all corrections move the targets by about as much, across both switches
+    /// too, and the bound is met on the way.
     #[test]
     fn the_projection_is_continuous_and_meets_the_bound_for_every_correction() {
         for (long, short) in [(1.0, 1.0), (2.0, 1.0), (1.0, 30.0)] {

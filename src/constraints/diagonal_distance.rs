@@ -1,23 +1,25 @@
 //! DiagonalDistance: a quad whose diagonals, taken as lines, are at most a distance apart.
 //!
-//! Set: quads `x₀ x₁ x₂ x₃` between two parallel planes at most `ε` apart, `x₀` and `x₂` on one, `x₁` and `x₃` on the other: with
-//! `u = x₂ − x₀`, `v = x₃ − x₁`, `w = ½ (x₁ + x₃ − x₀ − x₂)` there is a unit vector `n ⊥ u, v` with `|n·w| ≤ ε`. Where the
-//! diagonals are not parallel that is the distance of the lines, `D = |w·(u × v)|/‖u × v‖ ≤ ε`. Where they are parallel, or one has
-//! no length, the points lie in a plane, and lines however near to them meet: the closed set contains them, and they have no
-//! violation, whatever the distance from a point of one line to the other.
+//! Set: quads `x₀ x₁ x₂ x₃` between two parallel planes at most `ε` apart, `x₀` and `x₂` on one, `x₁` and `x₃` on the
+//! other: with `u = x₂ − x₀`, `v = x₃ − x₁`, `w = ½ (x₁ + x₃ − x₀ − x₂)` there is a unit vector `n ⊥ u, v` with
+//! `|n·w| ≤ ε`. Where the diagonals are not parallel that is the distance of the lines, `D = |w·(u × v)|/‖u × v‖ ≤ ε`.
+//! Where they are parallel, or one has no length, the points lie in a plane, and lines however near to them meet: the
+//! closed set contains them, and they have no violation, whatever the distance from a point of one line to the other.
 //!
-//! Rows: centred. Projection: onto the two planes at distance `ε`, `y_k = x_k + (s_k ε/2 − x_k·n) n` with `s = (−1, 1, −1, 1)`. The
-//! cost is `‖X n − b‖²` with the rows `x_k` and `b = ε/2 s`, over unit vectors `n`; nearest. With the singular value decomposition
-//! of `[u/√2  v/√2  w]` (orthonormal combinations of the rows), `d_i = σ_i² − σ_min²` and `g_i = ε (w·n_i)`, the global minimiser is
-//! `n = Σ g_i/(d_i + t) n_i` with the `t > 0` that makes it a unit vector: the multiplier `t − σ_min²` lies in `(−σ_min², 0)`. The
-//! least-squares solution over the ball, to which the paper refers, has a norm below 1 for every quad that is out of tolerance.
-//! `1/‖n(t)‖` is concave and increases, so that Newton's method rises to the root from `max(|g_i| − d_i)`. If `g` has no part along
-//! the singular vector of `σ_min` and the root is 0 (the hard case), that vector is added to fill up the unit length, on the side
-//! of `u × v`; for `ε = 0` this is the projection onto the best-fit plane.
+//! Rows: centred. Projection: onto the two planes at distance `ε`, `y_k = x_k + (s_k ε/2 − x_k·n) n` with
+//! `s = (−1, 1, −1, 1)`. The cost is `‖X n − b‖²` with the rows `x_k` and `b = ε/2 s`, over unit vectors `n`; nearest.
+//! With the singular value decomposition of `[u/√2  v/√2  w]` (orthonormal combinations of the rows),
+//! `d_i = σ_i² − σ_min²` and `g_i = ε (w·n_i)`, the global minimiser is `n = Σ g_i/(d_i + t) n_i` with the `t > 0` that
+//! makes it a unit vector: the multiplier `t − σ_min²` lies in `(−σ_min², 0)`. The least-squares solution over the
+//! ball, to which the paper refers, has a norm below 1 for every quad that is out of tolerance. `1/‖n(t)‖` is concave
+//! and increases, so that Newton's method rises to the root from `max(|g_i| − d_i)`. If `g` has no part along the
+//! singular vector of `σ_min` and the root is 0 (the hard case), that vector is added to fill up the unit length, on
+//! the side of `u × v`; for `ε = 0` this is the projection onto the best-fit plane.
 //!
-//! Scalar: `distance_max` = `ε` in model units, at least 0; by default the distance at creation. Violation: `D − ε` in model units,
-//! where that is above 0. Nothing can degenerate. Sources: Deng et al. 2015, section 3.3.1, for the planes; Golub & von Matt 1991,
-//! "Quadratically constrained least squares and quadratic problems", for the equality constraint.
+//! Scalar: `distance_max` = `ε` in model units, at least 0; by default the distance at creation. Violation: `D − ε` in
+//! model units, where that is above 0. Nothing can degenerate. Sources: Deng et al. 2015, section 3.3.1, for the
+//! planes; Golub & von Matt 1991, "Quadratically constrained least squares and quadratic problems", for the equality
+//! constraint.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -29,12 +31,12 @@ use crate::linalg::lanes::{self, F4, Mask, V4};
 use crate::linalg::simd::Isa;
 use crate::linalg::small::svd;
 
-/// Sines of the angle between the diagonals up to which they count as parallel: their common normal would have lost half its
-/// digits.
+/// Sines of the angle between the diagonals up to which they count as parallel: their common normal would have lost
+/// half its digits.
 const PARALLEL: f64 = 1e-8;
 
-/// Steps of Newton's method, a bound that is not reached: on a million random quads, down to a thousandth of their size flat, at
-/// most three were needed for 98 %, and ten for the worst.
+/// Steps of Newton's method, a bound that is not reached: on a million random quads, down to a thousandth of their size
+/// flat, at most three were needed for 98 %, and ten for the worst.
 const MAX_STEPS: usize = 40;
 
 /// How far `‖n‖²` may be from 1: a few units in the last place, for three squares and their sum.

@@ -1,10 +1,11 @@
 //! EdgeLength: an edge whose length stays within a range.
 //!
-//! Set: edges `e = x₁ − x₀` with `min ≤ ‖e‖ ≤ max`. Row: `e`. Projection: `clamp(‖e‖, min, max) e/‖e‖`; nearest. An edge of no
-//! length is given the direction that it had at creation, or +x if it had none. Scalars: `length_min`, `length_max` in model units
-//! with `0 ≤ min ≤ max`, by default both the length at creation. Unlike EdgeStrain, whose energy is that of a strain, the energy
-//! is that of lengths: edges weigh the same whatever their length. Violation: the distance of the length from the range in model
-//! units. Nothing can degenerate. Source: elementary; Deng et al. 2015, section 3.3.3, lists it.
+//! Set: edges `e = x₁ − x₀` with `min ≤ ‖e‖ ≤ max`. Row: `e`. Projection: `clamp(‖e‖, min, max) e/‖e‖`; nearest. An
+//! edge of no length is given the direction that it had at creation, or +x if it had none. Scalars: `length_min`,
+//! `length_max` in model units with `0 ≤ min ≤ max`, by default both the length at creation. Unlike EdgeStrain, whose
+//! energy is that of a strain, the energy is that of lengths: edges weigh the same whatever their length. Violation:
+//! the distance of the length from the range in model units. Nothing can degenerate. Source: elementary; Deng et al.
+//! 2015, section 3.3.3, lists it.
 
 use glam::DVec3;
 

@@ -1,9 +1,10 @@
 //! EqualLengths: edges, given by their ends one after the other, that have one length in common.
 //!
-//! Set: edges `e_i = x_{2i+1} − x_{2i}` with `‖e_i‖ = L` for some `L`. Rows: the edges. Projection: for a given `L` the nearest is
-//! `L e_i/‖e_i‖`, at a cost of `Σ (‖e_i‖ − L)²`, which is least where `L` is the mean of the lengths; nearest. An edge of no length
-//! has no direction: it is given +x. Edges may share points. Violation: the largest deviation of a length from the mean, in model
-//! units. Nothing can degenerate: all lengths may be 0. Source: elementary.
+//! Set: edges `e_i = x_{2i+1} − x_{2i}` with `‖e_i‖ = L` for some `L`. Rows: the edges. Projection: for a given `L` the
+//! nearest is `L e_i/‖e_i‖`, at a cost of `Σ (‖e_i‖ − L)²`, which is least where `L` is the mean of the lengths;
+//! nearest. An edge of no length has no direction: it is given +x. Edges may share points. Violation: the largest
+//! deviation of a length from the mean, in model units. Nothing can degenerate: all lengths may be 0. Source:
+//! elementary.
 
 use glam::DVec3;
 

@@ -1,9 +1,9 @@
 //! OnLine: a point on a given line.
 //!
-//! Set: `x = c + t d`. Row: `x`. Projection: `c + (d·(x − c)) d` with `d` a unit vector; nearest. Scalars: `x y z` of a point `c` of the
-//! line in model units, by default where the point was at creation, and `dx dy dz` of its direction, of any length but 0, by default
-//! (0, 0, 1): the plumb line through the point. Violation: the distance from the line in model units. Nothing can degenerate.
-//! Source: elementary.
+//! Set: `x = c + t d`. Row: `x`. Projection: `c + (d·(x − c)) d` with `d` a unit vector; nearest. Scalars: `x y z` of a
+//! point `c` of the line in model units, by default where the point was at creation, and `dx dy dz` of its direction,
+//! of any length but 0, by default (0, 0, 1): the plumb line through the point. Violation: the distance from the line
+//! in model units. Nothing can degenerate. Source: elementary.
 
 use glam::DVec3;
 

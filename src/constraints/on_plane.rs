@@ -1,9 +1,9 @@
 //! OnPlane: a point on a given plane.
 //!
-//! Set: `n·(x − c) = 0`. Row: `x`. Projection: `x − (n·(x − c)) n` with `n` a unit vector; nearest. Scalars: `x y z` of a point `c` of
-//! the plane in model units, by default where the point was at creation, and `nx ny nz` of its normal, of any length but 0, whose
-//! sign does not matter, by default (0, 0, 1): the level of the point. Violation: the distance from the plane in model units.
-//! Nothing can degenerate. Source: elementary.
+//! Set: `n·(x − c) = 0`. Row: `x`. Projection: `x − (n·(x − c)) n` with `n` a unit vector; nearest. Scalars: `x y z` of
+//! a point `c` of the plane in model units, by default where the point was at creation, and `nx ny nz` of its normal,
+//! of any length but 0, whose sign does not matter, by default (0, 0, 1): the level of the point. Violation: the
+//! distance from the plane in model units. Nothing can degenerate. Source: elementary.
 
 use glam::DVec3;
 

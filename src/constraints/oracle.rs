@@ -1,7 +1,8 @@
 //! Projections against an oracle that knows none of their formulas.
 //!
-//! The oracle is Levenberg and Marquardt's method with numeric derivatives, started from many random places, on a parametrisation
-//! that covers the set. It says how far the nearest element of the set is; no projection may be further.
+//! The oracle is Levenberg and Marquardt's method with numeric derivatives, started from many random places, on a
+//! parametrisation that covers the set. It says how far the nearest element of the set is; no projection may be
+//! further.
 
 use std::f64::consts::PI;
 
@@ -306,8 +307,8 @@ fn degenerate(k: usize) -> Vec<Vec<DVec3>> {
     kinds.iter().flat_map(|kind| [1.0, 1e6].map(|scale| kind.iter().map(|point| scale * *point).collect())).collect()
 }
 
-/// Projects degenerate configurations, those of [`degenerate`] and `others`, of constraints at rest at an ordinary and at the
-/// degenerate one; what is projected must be finite and in the set.
+/// Projects degenerate configurations, those of [`degenerate`] and `others`, of constraints at rest at an ordinary and
+/// at the degenerate one; what is projected must be finite and in the set.
 fn stays_finite<T: Constraint>(k: usize, scalars: &[&[f64]], others: &[Vec<DVec3>]) {
     let name = T::INFO.name;
     let ordinary: Vec<DVec3> = (0..k).map(|i| DVec3::new(i as f64, (i * i % 3) as f64, (i * i % 7) as f64)).collect();

@@ -1,9 +1,10 @@
 //! Orientation: points in a plane of a given normal.
 //!
-//! Set: all configurations with `n·(x_i − x_j) = 0`. Rows: centred. Projection: `x − (n·x) n` with `n` a unit vector, onto the plane
-//! through the mean; nearest. Scalars: `nx ny nz`, of any length but 0, whose sign does not matter; by default the normal of the
-//! best-fit plane at creation, some normal of the line where the points were on one. Violation: the largest distance of a point
-//! from the plane through the mean, in model units. Nothing can degenerate. Source: elementary.
+//! Set: all configurations with `n·(x_i − x_j) = 0`. Rows: centred. Projection: `x − (n·x) n` with `n` a unit vector,
+//! onto the plane through the mean; nearest. Scalars: `nx ny nz`, of any length but 0, whose sign does not matter; by
+//! default the normal of the best-fit plane at creation, some normal of the line where the points were on one.
+//! Violation: the largest distance of a point from the plane through the mean, in model units. Nothing can degenerate.
+//! Source: elementary.
 
 use glam::DVec3;
 

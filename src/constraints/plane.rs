@@ -1,9 +1,9 @@
 //! Plane: points on a common plane.
 //!
-//! Set: all configurations on some plane. Rows: centred. Projection: onto the plane through the mean whose normal is the
-//! eigenvector of the least eigenvalue of the scatter `Σ x xᵀ`; nearest. Points on a line are on a plane already: whatever
-//! the eigenvector, they stay. Signatures may call it PlanarPolygon. Violation: the largest distance of a point from the best-fit plane, in model units.
-//! Sources: Bouaziz et al. 2012, section 3; Deuss et al. 2015, Table 1.
+//! Set: all configurations on some plane. Rows: centred. Projection: onto the plane through the mean whose normal is
+//! the eigenvector of the least eigenvalue of the scatter `Σ x xᵀ`; nearest. Points on a line are on a plane already:
+//! whatever the eigenvector, they stay. Signatures may call it PlanarPolygon. Violation: the largest distance of a
+//! point from the best-fit plane, in model units. Sources: Bouaziz et al. 2012, section 3; Deuss et al. 2015, Table 1.
 
 use glam::DVec3;
 
@@ -14,7 +14,8 @@ use crate::linalg::small::{least_eigenvector, scatter};
 
 /// One Plane constraint; it has no rest state.
 ///
-/// For the corners of a face that is a planar polygon, of any number of them; "PlanarPolygon" is another name of the type.
+/// For the corners of a face that is a planar polygon, of any number of them; "PlanarPolygon" is another name of the
+/// type.
 #[derive(Clone, Debug)]
 pub struct Plane;
 

@@ -1,14 +1,15 @@
 //! RegularPolygon: points, in order, that are the corners of a regular polygon of any size.
 //!
-//! Set: `c + cos(2πj/k) a + sin(2πj/k) b` for `j = 0 … k−1`, with `‖a‖ = ‖b‖`, `a ⊥ b`: one turn about a center, in any plane, from
-//! any direction, of any radius down to 0. Rows: centred. Projection: nearest, in closed form. With the points relative to their
-//! mean, `p = Σ cos(2πj/k) x_j` and `q = Σ sin(2πj/k) x_j`, the cost is `Σ x_j² − 2 (p·a + q·b) + k ‖a‖²`. For a plane of normal `n`,
-//! `b = n × a` and the cost is least at `a = (p + q × n)/k`, where it has fallen by `‖p + q × n‖²/k`; of
-//! `‖p + q × n‖² = p² + q² + 2 n·(p × q)` the most is reached by the `n` along `p × q`. Where `p` and `q` are on one line (as for all
-//! collinear points) each `n` orthogonal to it is as near: the one nearest to that at creation is taken, or any where that was on
-//! a line too. Violation: the largest distance of a point from the nearest regular polygon, in model units. Nothing can degenerate:
-//! a regular polygon may shrink to a point. Source: the derivation above; it is the orthogonal Procrustes problem (Umeyama 1991)
-//! for a template whose scatter is that of a circle.
+//! Set: `c + cos(2πj/k) a + sin(2πj/k) b` for `j = 0 … k−1`, with `‖a‖ = ‖b‖`, `a ⊥ b`: one turn about a center, in any
+//! plane, from any direction, of any radius down to 0. Rows: centred. Projection: nearest, in closed form. With the
+//! points relative to their mean, `p = Σ cos(2πj/k) x_j` and `q = Σ sin(2πj/k) x_j`, the cost is
+//! `Σ x_j² − 2 (p·a + q·b) + k ‖a‖²`. For a plane of normal `n`, `b = n × a` and the cost is least at
+//! `a = (p + q × n)/k`, where it has fallen by `‖p + q × n‖²/k`; of `‖p + q × n‖² = p² + q² + 2 n·(p × q)` the most is
+//! reached by the `n` along `p × q`. Where `p` and `q` are on one line (as for all collinear points) each `n`
+//! orthogonal to it is as near: the one nearest to that at creation is taken, or any where that was on a line too.
+//! Violation: the largest distance of a point from the nearest regular polygon, in model units. Nothing can degenerate:
+//! a regular polygon may shrink to a point. Source: the derivation above; it is the orthogonal Procrustes problem
+//! (Umeyama 1991) for a template whose scatter is that of a circle.
 
 use std::f64::consts::TAU;
 
@@ -19,7 +20,8 @@ use crate::linalg::lanes::{Mask, V4};
 use crate::linalg::simd::Isa;
 use crate::linalg::small::any_orthogonal;
 
-/// `‖p × q‖` up to which, relative to `p² + q²`, the points span no plane: its direction would have lost all its digits.
+/// `‖p × q‖` up to which, relative to `p² + q²`, the points span no plane: its direction would have lost all its
+/// digits.
 const COLLINEAR: f64 = 1e-14;
 
 /// As [`COLLINEAR`], from which on four at once lose less than four digits.
