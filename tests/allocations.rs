@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 use shapeop::constraints::types;
-use shapeop::problem::Acceleration;
+use shapeop::problem::{Acceleration, Force, Reference};
 use shapeop::solver::{LinearSolver, SolveOptions, Solver};
 
 struct Counting;
@@ -54,6 +54,10 @@ fn between_the_second_and_the_last_iteration_nothing_is_allocated() {
         solver.set_thread_count(1);
         solver.set_acceleration(acceleration, 6).unwrap();
         solver.set_points(&points).unwrap();
+        let all: Vec<[f64; 3]> = points.iter().map(DVec3::to_array).collect();
+        let triangles = (0..all.len() as u32 - 2).map(|i| [i, i + 1, i + 2]).collect();
+        solver.add_reference(&Reference::Polyline { points: all.clone(), closed: false }).unwrap();
+        solver.add_reference(&Reference::Mesh { points: all, triangles }).unwrap();
         for info in types() {
             // Every type at its least number of indices, and as long as it may be.
             let longest = info.greatest_indices.unwrap_or(20);
@@ -64,6 +68,12 @@ fn between_the_second_and_the_last_iteration_nothing_is_allocated() {
             }
             let long: Vec<u32> = (0..longest as u32).collect();
             solver.add_constraint(info.name, &long, 1.0).unwrap();
+        }
+        if acceleration == Acceleration::None {
+            let faces = |i| [i, i + 1, i + n + 1, i + n];
+            let faces: shapeop::problem::Faces = (0..n * (n - 2)).map(faces).collect();
+            solver.add_force(Force::Pressure { pressure: 1e-3, faces: faces.clone() }).unwrap();
+            solver.add_force(Force::Normal { magnitude: 1e-3, faces }).unwrap();
         }
         match is_dynamic {
             true => solver.init_dynamic(1.0, 1.0, 0.1).unwrap(),

@@ -874,6 +874,7 @@ fn the_registry_by_index_says_what_the_library_knows() {
         }
         // Every type can be added with its least number of indices, and edited as it says.
         let abi = Abi::with_points(&(0..60).map(|i| f64::from(i * i % 13)).collect::<Vec<_>>());
+        abi.any_references();
         let ids: Vec<c_int> = (0..told.least_indices).collect();
         assert_eq!(abi.add(info.name, &ids, 1.0), 0, "{}", abi.message());
         assert_eq!(abi.edit(info.name, 0, &[]) == SO_INVALID_CONSTRAINT_TYPE, told.scalar_count == 0);

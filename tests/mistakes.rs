@@ -297,6 +297,7 @@ mistakes! {
         ] {
             for (index, info) in shapeop::constraints::types().enumerate() {
                 let abi = Abi::with_points(&points);
+                abi.any_references();
                 let ids: Vec<c_int> = (0..info.least_indices as c_int).collect();
                 assert_eq!(abi.add(info.name, &ids, 1.0), 0, "type {index}: {}", abi.message());
                 if degenerate.contains(&info.name) {

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use shapeop::error::Status;
-use shapeop::problem::{Edit, ForceKind, ForceSignature, Mode, Problem, Signature};
+use shapeop::problem::{Edit, ForceKind, ForceSignature, Mode, Problem, Reference, Signature};
 
 fn sample() -> Problem {
     Problem {
@@ -17,10 +17,34 @@ fn sample() -> Problem {
                 weight: 1.0,
                 scalars: Some(vec![1.0, 2.0, 3.0]),
             },
+            Signature { type_name: "OnMesh".into(), indices: vec![2], weight: 1.0, scalars: Some(vec![1.0]) },
         ],
         forces: vec![
-            ForceSignature { kind: ForceKind::Gravity, force: [0.0, 0.0, -9.81], id: None },
-            ForceSignature { kind: ForceKind::Vertex, force: [1.0, 0.0, 0.0], id: Some(2) },
+            ForceSignature {
+                kind: ForceKind::Gravity,
+                force: Some([0.0, 0.0, -9.81]),
+                id: None,
+                magnitude: None,
+                faces: Vec::new(),
+            },
+            ForceSignature {
+                kind: ForceKind::Pressure,
+                force: None,
+                id: None,
+                magnitude: Some(0.1 + 0.2),
+                faces: vec![vec![0, 1, 2]],
+            },
+            ForceSignature {
+                kind: ForceKind::Vertex,
+                force: Some([1.0, 0.0, 0.0]),
+                id: Some(2),
+                magnitude: None,
+                faces: Vec::new(),
+            },
+        ],
+        references: vec![
+            Reference::Polyline { points: vec![[0.0; 3], [0.1, 0.2, 0.3]], closed: true },
+            Reference::Mesh { points: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 5e-324, 0.1]], triangles: vec![[0, 1, 2]] },
         ],
         edits: vec![Edit { before_step: 2, constraint: 1, scalars: vec![0.0, 0.5, -1.0] }],
         faces: vec![vec![0, 1, 2]],
@@ -112,6 +136,77 @@ fn what_errs_is_refused_with_its_place() {
         (
             format!(r#"{{{points}, "forces": [{{"kind": "vertex", "force": [0, 0, 1]}}]}}"#),
             "forces[0].id: expected the index of the point",
+            Status::InvalidValue,
+        ),
+        (
+            format!(r#"{{{points}, "forces": [{{"kind": "pressure", "magnitude": 2}}]}}"#),
+            "forces[0].faces: expected at least one face, found none",
+            Status::InvalidArgumentLength,
+        ),
+        (
+            format!(r#"{{{points}, "forces": [{{"kind": "normal", "faces": [[0, 1, 2]]}}]}}"#),
+            "forces[0].magnitude: expected a number, found none",
+            Status::InvalidValue,
+        ),
+        (
+            format!(
+                r#"{{{points}, "forces": [{{"kind": "pressure", "magnitude": 2, "faces": [[0, 1, 2], [0, 1, 3]]}}]}}"#
+            ),
+            "forces[0].faces[1][2]: 3 is out of range for 3 points",
+            Status::IndexOutOfRange,
+        ),
+        (
+            format!(r#"{{{points}, "forces": [{{"kind": "normal", "magnitude": 2, "faces": [[0, 1]]}}]}}"#),
+            "forces[0].faces[0]: expected a face of at least 3 corners, found 2",
+            Status::InvalidArgumentLength,
+        ),
+        (
+            format!(r#"{{{points}, "forces": [{{"kind": "pressure", "force": [0, 0, 1], "faces": [[0, 1, 2]]}}]}}"#),
+            "forces[0].force: expected none for a force of kind \"pressure\", which has a magnitude",
+            Status::InvalidValue,
+        ),
+        (
+            format!(r#"{{{points}, "forces": [{{"kind": "normal", "magnitude": 2, "id": 1, "faces": [[0, 1, 2]]}}]}}"#),
+            "forces[0].id: expected none for a force of kind \"normal\", found 1",
+            Status::InvalidValue,
+        ),
+        (
+            format!(r#"{{{points}, "forces": [{{"kind": "gravity", "magnitude": 2}}]}}"#),
+            "forces[0].magnitude: expected none for a force of kind \"gravity\", which has a force; found 2",
+            Status::InvalidValue,
+        ),
+        (
+            format!(
+                r#"{{{points}, "forces": [{{"kind": "vertex", "force": [0, 0, 1], "id": 0, "faces": [[0, 1, 2]]}}]}}"#
+            ),
+            "forces[0].faces: expected none for a force of kind \"vertex\", found 1",
+            Status::InvalidValue,
+        ),
+        (
+            format!(r#"{{{points}, "forces": [{{"kind": "gravity"}}]}}"#),
+            "forces[0].force: expected its components [x, y, z], found none",
+            Status::InvalidValue,
+        ),
+        (
+            format!(r#"{{{points}, "references": [{{"polyline": {{"points": [[0, 0, 0]]}}}}]}}"#),
+            "references[0].polyline.points: expected at least 2, found 1",
+            Status::InvalidArgumentLength,
+        ),
+        (
+            format!(
+                r#"{{{points}, "references": [{{"mesh": {{"points": [[0, 0, 0]], "triangles": [[0, 0, 0], [0, 0, 1]]}}}}]}}"#
+            ),
+            "references[0].mesh.triangles[1][2]: 1 is out of range for 1 points",
+            Status::IndexOutOfRange,
+        ),
+        (
+            format!(r#"{{{points}, "references": [{{"polyline": {{"points": [[0, 0, 0]], "is_closed": true}}}}]}}"#),
+            "references[0].polyline.is_closed: unknown field `is_closed`",
+            Status::InvalidInput,
+        ),
+        (
+            format!(r#"{{{points}, "constraints": [{{"type": "OnMesh", "indices": [0]}}]}}"#),
+            "constraints[0].scalars[0]: expected the id of a mesh, found none among 0 references",
             Status::InvalidValue,
         ),
         (

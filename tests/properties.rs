@@ -10,7 +10,7 @@ use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use shapeop::constraints::{Projection, TypeInfo, types};
-use shapeop::problem::{Acceleration, Force};
+use shapeop::problem::{Acceleration, Force, Reference};
 use shapeop::solver::{SolveOptions, Solver};
 
 /// The lattice's numbers of points.
@@ -44,6 +44,8 @@ struct Stated {
 
 #[derive(Clone)]
 struct Model {
+    /// Points of the polyline and of the mesh that constraints may refer to.
+    reference: Vec<DVec3>,
     rest: Vec<DVec3>,
     points: Vec<DVec3>,
     constraints: Vec<Stated>,
@@ -109,13 +111,19 @@ fn model(seed: u64, spread: f64, is_chosen: impl Fn(&TypeInfo) -> bool) -> Model
         let (indices, scalars) = (indices_for(info, &mut stream), scalars_for(info, &mut stream));
         constraints.push(Stated { info, indices, weight: 0.1 + stream.next(), scalars });
     }
-    Model { rest, points, constraints, force: 0.05 * stream.vector() }
+    let force = 0.05 * stream.vector();
+    let reference = (0..9).map(|i| DVec3::splat(f64::from(i) / 3.0) + stream.vector()).collect();
+    Model { reference, rest, points, constraints, force }
 }
 
 impl Model {
     fn solver(&self, is_dynamic: bool) -> Solver {
         let mut solver = Solver::new();
         solver.set_points(&self.rest).unwrap();
+        let points: Vec<[f64; 3]> = self.reference.iter().map(DVec3::to_array).collect();
+        let triangles = (0..points.len() as u32 - 2).map(|i| [i, i + 1, i + 2]).collect();
+        solver.add_reference(&Reference::Polyline { points: points.clone(), closed: true }).unwrap();
+        solver.add_reference(&Reference::Mesh { points, triangles }).unwrap();
         for stated in &self.constraints {
             let id = solver.add_constraint(stated.info.name, &stated.indices, stated.weight).unwrap();
             if let Some(scalars) = &stated.scalars {
@@ -141,8 +149,8 @@ impl Model {
 
     fn moved(&self, rotation: DQuat, shift: DVec3) -> Self {
         let all = |points: &[DVec3]| points.iter().map(|point| rotation * *point + shift).collect();
-        let mut moved =
-            Self { rest: all(&self.rest), points: all(&self.points), force: rotation * self.force, ..self.clone() };
+        let (reference, rest, points) = (all(&self.reference), all(&self.rest), all(&self.points));
+        let mut moved = Self { reference, rest, points, force: rotation * self.force, ..self.clone() };
         for stated in &mut moved.constraints {
             if let ("OnPlane" | "OnLine", Some(scalars)) = (stated.info.name, &mut stated.scalars) {
                 let (point, direction) = (DVec3::from_slice(scalars), DVec3::from_slice(&scalars[3..]));
@@ -156,8 +164,8 @@ impl Model {
     /// The same model `s` times as large, with the weights that keep its balance.
     fn scaled(&self, s: f64) -> Self {
         let all = |points: &[DVec3]| points.iter().map(|point| s * *point).collect();
-        let mut scaled =
-            Self { rest: all(&self.rest), points: all(&self.points), force: s * self.force, ..self.clone() };
+        let (reference, rest, points) = (all(&self.reference), all(&self.rest), all(&self.points));
+        let mut scaled = Self { reference, rest, points, force: s * self.force, ..self.clone() };
         for stated in &mut scaled.constraints {
             stated.weight *= s.powi(2 - stated.info.energy_scale_power);
             match (stated.info.name, &mut stated.scalars) {

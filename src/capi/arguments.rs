@@ -99,3 +99,33 @@ pub(super) fn point_index(name: &str, index: c_int, point_count: usize) -> Resul
     let reason = || format!("{index} is out of range for {point_count} points");
     u32::try_from(index).map_err(|_| Error::new(Status::IndexOutOfRange, reason()).at(name))
 }
+
+/// Faces as lists of corners: `indices` behind each other, whose number the argument `name` is, and the number of corners of
+/// each in `counts`, or one for all.
+pub(super) fn faces(name: &str, indices: &[c_int], counts: &[c_int], point_count: usize) -> Result<Vec<Vec<u32>>> {
+    let misfit = |name: &str, reason: String| Err(Error::new(Status::InvalidArgumentLength, reason).at(name));
+    let counts: Vec<usize> = match *counts {
+        [count] if count > 0 && !indices.len().is_multiple_of(count as usize) => {
+            let reason = format!("expected a multiple of {count}, the corners of each face; found {}", indices.len());
+            return misfit(name, reason);
+        }
+        [count] if count > 0 => vec![count as usize; indices.len() / count as usize],
+        _ => {
+            let all = counts.iter().enumerate();
+            all.map(|(i, &count)| length(&format!("counts[{i}]"), count)).collect::<Result<_>>()?
+        }
+    };
+    let index_count = counts.iter().fold(0_usize, |sum, &count| sum.saturating_add(count));
+    if index_count != indices.len() {
+        return misfit(name, format!("expected {index_count}, the sum of counts; found {}", indices.len()));
+    }
+    let mut faces = Vec::with_capacity(counts.len());
+    let mut rest = indices;
+    for (i, &count) in counts.iter().enumerate() {
+        let (face, behind) = rest.split_at(count);
+        rest = behind;
+        let index = |(j, &index): (usize, &c_int)| point_index(&format!("faces[{i}][{j}]"), index, point_count);
+        faces.push(face.iter().enumerate().map(index).collect::<Result<Vec<u32>>>()?);
+    }
+    Ok(faces)
+}

@@ -4,6 +4,7 @@ use std::ffi::{c_char, c_int, c_uint};
 
 use super::arguments::{check_pointer, constraint_id, length, slice, text, write};
 use super::handles::ShapeOpSolver;
+use super::explore::SHAPEOP_HARD;
 use super::{c_count, code, guard, guard_read, number, shapeop_err};
 use crate::constraints::{NewConstraints, Scalars, TypeIndex};
 use crate::error::{Error, Result, Status};
@@ -49,7 +50,7 @@ pub unsafe extern "C" fn shapeop_addConstraint(
 /// - `scalars`: scalar sets behind each other, `nb_scalars` numbers in all. `nb_scalar_sets` 0: the defaults of the
 ///   type; 1: one set for all; otherwise one per constraint. For types that take shapes every set has the same number
 ///   of shapes, each of its own constraint's number of points.
-/// - `flags`: 0. Unknown bits are refused.
+/// - `flags`: 0, or `SHAPEOP_HARD`: they are to be met exactly, see `shapeop_setHard`. Unknown bits are refused.
 /// - `constraint_ids`: null, or where the ids go, one int per constraint.
 ///
 /// # Safety
@@ -72,8 +73,8 @@ pub unsafe extern "C" fn shapeop_addConstraints(
     constraint_ids: *mut c_int,
 ) -> shapeop_err {
     code(guard(op, |solver| {
-        if flags != 0 {
-            let reason = format!("expected 0, as this version knows no flag; found {flags:#x}");
+        if flags & !SHAPEOP_HARD != 0 {
+            let reason = format!("expected 0 or {SHAPEOP_HARD} (SHAPEOP_HARD), found {flags:#x}");
             return Err(Error::new(Status::InvalidValue, reason).at("flags"));
         }
         // SAFETY: the caller vouches for the text and for the number of values of each array.
@@ -93,7 +94,8 @@ pub unsafe extern "C" fn shapeop_addConstraints(
         }
         let scalar_set_count = length("nb_scalar_sets", nb_scalar_sets)?;
         let bulk = Bulk { type_name: &type_name, indices, counts, weights, scalars, scalar_set_count };
-        let first = bulk.add_to(solver)?;
+        let is_hard = flags & SHAPEOP_HARD != 0;
+        let first = if is_hard { bulk.add_hard_to(solver)? } else { bulk.add_to(solver)? };
         let new_ids: Vec<c_int> = (first..first + constraint_count).map(|id| id as c_int).collect();
         // SAFETY: the pointer was checked, and the caller vouches for one int per constraint.
         unsafe { write(constraint_ids, &new_ids) };
@@ -284,6 +286,18 @@ impl Bulk<'_> {
             scalars,
             scalar_counts: &scalar_counts,
         })
+    }
+
+    /// Adds them and makes them hard, all or none; returns the id of the first.
+    fn add_hard_to(self, solver: &mut Solver) -> Result<usize> {
+        let count = self.counts.len();
+        let first = self.add_to(solver)?;
+        let ids: Vec<usize> = (first..first + count).collect();
+        if let Err(error) = solver.set_hard(&ids, true) {
+            solver.take_back_constraints(first);
+            return Err(error);
+        }
+        Ok(first)
     }
 
     /// The constraint that the index at `position` belongs to, and its place there.

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use super::arguments::{check_pointer, length, point_index, slice, text, write, xyz_length};
+use super::arguments::{check_pointer, faces, length, slice, text, write, xyz_length};
 use super::handles::ShapeOpSolver;
 use super::points::check_count;
 use super::registry::position;
@@ -283,34 +283,7 @@ unsafe fn mesh(
             slice("counts", counts, length("nb_counts", nb_counts)?)?,
         )
     };
-    let misfit = |name: &str, reason: String| Err(Error::new(Status::InvalidArgumentLength, reason).at(name));
-    let counts: Vec<usize> = match *counts {
-        [count] if count > 0 && !indices.len().is_multiple_of(count as usize) => {
-            let reason = format!("expected a multiple of {count}, the corners of each face; found {}", indices.len());
-            return misfit("nb_face_indices", reason);
-        }
-        [count] if count > 0 => vec![count as usize; indices.len() / count as usize],
-        _ => {
-            let all = counts.iter().enumerate();
-            all.map(|(i, &count)| length(&format!("counts[{i}]"), count)).collect::<Result<_>>()?
-        }
-    };
-    let index_count = counts.iter().fold(0_usize, |sum, &count| sum.saturating_add(count));
-    if index_count != indices.len() {
-        return misfit(
-            "nb_face_indices",
-            format!("expected {index_count}, the sum of counts; found {}", indices.len()),
-        );
-    }
-    let point_count = coordinates.len() / 3;
-    let mut faces = Vec::with_capacity(counts.len());
-    let mut rest = indices;
-    for (i, &count) in counts.iter().enumerate() {
-        let (face, behind) = rest.split_at(count);
-        rest = behind;
-        let index = |(j, &index): (usize, &c_int)| point_index(&format!("faces[{i}][{j}]"), index, point_count);
-        faces.push(face.iter().enumerate().map(index).collect::<Result<Vec<u32>>>()?);
-    }
+    let faces = faces("nb_face_indices", indices, counts, coordinates.len() / 3)?;
     Ok(Mesh { points: coordinates.chunks_exact(3).map(DVec3::from_slice).collect(), faces })
 }
 

@@ -156,6 +156,12 @@ struct Texts {
     scalars: Vec<CString>,
 }
 
+/// The name of a type as C has it; null for what is none.
+pub(super) fn name_of_type(name: &str) -> *const c_char {
+    let index = types().position(|info| info.name == name).and_then(|index| c_int::try_from(index).ok());
+    index.and_then(|index| of_type(index).ok()).map_or(ptr::null(), |(_, texts)| texts.name.as_ptr())
+}
+
 fn scalars(info: &'static TypeInfo) -> &'static [Scalar] {
     match info.scalars {
         Scalars::Named(scalars) => scalars,

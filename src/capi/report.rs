@@ -45,6 +45,8 @@ pub enum shapeop_outcome {
     /// A force acts along a motion that no constraint resists, and the points did not move. `shapeop_lastError` says
     /// which.
     SO_OUTCOME_UNBOUNDED = 5,
+    /// Hard constraints contradict each other; `shapeop_getConflicts` names a small set, and the points meet the others.
+    SO_OUTCOME_INFEASIBLE = 6,
 }
 
 /// What a solve found.
@@ -310,6 +312,7 @@ fn outcome(outcome: Outcome) -> shapeop_outcome {
         Outcome::Cancelled => shapeop_outcome::SO_OUTCOME_CANCELLED,
         Outcome::Stalled => shapeop_outcome::SO_OUTCOME_STALLED,
         Outcome::Unbounded => shapeop_outcome::SO_OUTCOME_UNBOUNDED,
+        Outcome::Infeasible => shapeop_outcome::SO_OUTCOME_INFEASIBLE,
     }
 }
 
@@ -326,6 +329,7 @@ mod tests {
             Outcome::Cancelled,
             Outcome::Stalled,
             Outcome::Unbounded,
+            Outcome::Infeasible,
         ] {
             assert_eq!(outcome(each) as i32, each as i32);
         }

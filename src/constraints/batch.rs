@@ -2,12 +2,13 @@
 
 use std::any::Any;
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::DVec3;
 
 use super::deformation::{Deformation, gradient_four};
 use super::lists::Lists;
-use super::{Constraint, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, ReferenceShape, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{self, F4, Mask, V4};
 use crate::linalg::simd::{Isa, LaneKernel, dispatch_lanes};
 
@@ -20,8 +21,8 @@ pub(crate) trait Batch: Any + Send + Sync {
     /// The number of slots.
     fn len(&self) -> usize;
 
-    /// Appends a constraint on the points `indices`, at rest where `points` are now.
-    fn push(&mut self, points: &[DVec3], indices: &[u32]);
+    /// Appends a constraint on the points `indices`, at rest where `points` are now, with the reference of types that have one.
+    fn push(&mut self, points: &[DVec3], indices: &[u32], reference: Option<&Arc<ReferenceShape>>);
 
     /// Drops the slots where `keep` is false. `keep` has one entry per slot.
     fn retain(&mut self, keep: &[bool]);
@@ -36,8 +37,9 @@ pub(crate) trait Batch: Any + Send + Sync {
     /// The scalars in force of a slot.
     fn scalars(&self, slot: usize) -> &[f64];
 
-    /// Replaces the scalars of a slot; they were checked. Returns true if the rows or the measure changed with them.
-    fn set_scalars(&mut self, slot: usize, scalars: &[f64]) -> bool;
+    /// Replaces the scalars of a slot, which were checked, and the reference that they name. Returns true if the rows or the
+    /// measure changed with them.
+    fn set_scalars(&mut self, slot: usize, scalars: &[f64], reference: Option<&Arc<ReferenceShape>>) -> bool;
 
     /// The factor on the user's weight.
     fn measure(&self, slot: usize) -> f64;
@@ -115,9 +117,11 @@ impl<T: Constraint> Batch for TypedBatch<T> {
         self.rest.len()
     }
 
-    fn push(&mut self, points: &[DVec3], indices: &[u32]) {
+    fn push(&mut self, points: &[DVec3], indices: &[u32], reference: Option<&Arc<ReferenceShape>>) {
         let stencil = T::INFO.rows.stencil(points, indices);
-        self.rest.push(self.scalars.push_with(|scalars| T::at_rest(stencil, scalars)));
+        let mut constraint = self.scalars.push_with(|scalars| T::at_rest(stencil, scalars));
+        reference.into_iter().for_each(|shape| constraint.refer_to(shape));
+        self.rest.push(constraint);
         self.indices.push_with(|all| all.extend_from_slice(indices));
         self.coefficients.extend(self.computed_rows(self.rest.len() - 1));
     }
@@ -145,10 +149,11 @@ impl<T: Constraint> Batch for TypedBatch<T> {
         self.scalars.get(slot)
     }
 
-    fn set_scalars(&mut self, slot: usize, scalars: &[f64]) -> bool {
+    fn set_scalars(&mut self, slot: usize, scalars: &[f64], reference: Option<&Arc<ReferenceShape>>) -> bool {
         let measure = self.measure(slot);
         self.scalars.replace(slot, scalars);
         self.rest[slot].scalars_changed(scalars);
+        reference.into_iter().for_each(|shape| self.rest[slot].refer_to(shape));
         let (rows, range) = (self.computed_rows(slot), self.coefficient_range(slot));
         let changed = self.coefficients[range.clone()] != rows || self.measure(slot) != measure;
         self.coefficients[range].copy_from_slice(&rows);

@@ -3,8 +3,11 @@
 //! A law is a function of the type; `for_each_type!` calls it for each. Samples come from a fixed stream of numbers, so a
 //! failure repeats; its message names the type and the sample.
 
+use std::sync::Arc;
+
 use glam::{DQuat, DVec3};
 
+use super::references::samples::{reference, with_references};
 use super::{
     Constraint, ConstraintSet, Four, NewConstraints, Projection, Rows, Scalars, Stencil, TypeInfo, for_each_type,
 };
@@ -31,7 +34,7 @@ impl Stream {
         2.0 * DVec3::new(self.next(), self.next(), self.next()) - 1.0
     }
 
-    fn vectors(&mut self, count: usize) -> Vec<DVec3> {
+    pub(super) fn vectors(&mut self, count: usize) -> Vec<DVec3> {
         (0..count).map(|_| self.vector()).collect()
     }
 }
@@ -46,9 +49,17 @@ pub(super) struct Sample<T> {
 
 impl<T: Constraint> Sample<T> {
     pub(super) fn at_rest(rest: &[DVec3]) -> Self {
+        Self::at_rest_by(rest, |point| point)
+    }
+
+    /// As `at_rest`, with a reference that was moved by `place`.
+    fn at_rest_by(rest: &[DVec3], place: impl Fn(DVec3) -> DVec3) -> Self {
         let indices: Vec<u32> = (0..rest.len() as u32).collect();
         let mut scalars = Vec::new();
-        let constraint = T::at_rest(T::INFO.rows.stencil(rest, &indices), &mut scalars);
+        let mut constraint = T::at_rest(T::INFO.rows.stencil(rest, &indices), &mut scalars);
+        if let Some(kind) = T::REFERENCE {
+            constraint.refer_to(&Arc::new(reference(kind, 0, place)));
+        }
         Self { constraint, scalars, indices }
     }
 
@@ -69,6 +80,9 @@ impl<T: Constraint> Sample<T> {
                 let shapes = if stream.next() < 0.7 { (0..k).map(corner).collect() } else { stream.vectors(2 * k) };
                 sample.scalars = shapes.iter().flat_map(DVec3::to_array).collect();
             }
+            Scalars::Named(_) if T::REFERENCE.is_some() => {
+                sample.scalars[0] = (3.0 * stream.next()).floor();
+            }
             Scalars::Named(_) => {
                 let defaults = sample.scalars.clone();
                 sample.scalars = (0..1000)
@@ -78,6 +92,9 @@ impl<T: Constraint> Sample<T> {
             }
         }
         sample.constraint.scalars_changed(&sample.scalars);
+        if let Some(kind) = T::REFERENCE {
+            sample.constraint.refer_to(&Arc::new(reference(kind, sample.scalars[0] as u64, |point| point)));
+        }
         sample
     }
 
@@ -291,7 +308,7 @@ fn projections_turn_and_scale_with_the_model() {
             let scale = 10_f64.powf(12.0 * stream.next() - 6.0);
             let sample = Sample::<T>::at_rest(&rest);
             let moved = |points: &[DVec3]| points.iter().map(|&p| scale * (turn * p + shift)).collect::<Vec<_>>();
-            let mut other = Sample::<T>::at_rest(&moved(&rest));
+            let mut other = Sample::<T>::at_rest_by(&moved(&rest), |point| moved(&[point])[0]);
             turn_directions(&T::INFO, turn, &sample.scalars, &mut other.scalars);
             other.constraint.scalars_changed(&other.scalars);
             let energy = |sample: &Sample<T>, x: &[DVec3]| {
@@ -442,7 +459,7 @@ fn wrong_scalars_are_refused_and_change_nothing() {
     fn law<T: Constraint>() {
         let (rest, _, _) = points(&T::INFO, 3);
         let indices: Vec<u32> = (0..rest.len() as u32).collect();
-        let mut set = ConstraintSet::default();
+        let mut set = with_references();
         let new = NewConstraints {
             type_name: T::INFO.name,
             indices: &indices,
@@ -546,7 +563,7 @@ fn squared_residuals_are_those_of_the_rows() {
             };
             let (rest, x) = (copies(&rest, &mut stream), copies(&x, &mut stream));
             let indices: Vec<u32> = (0..(count * k) as u32).collect();
-            let mut set = ConstraintSet::default();
+            let mut set = with_references();
             let counts = vec![k; count];
             let new = NewConstraints {
                 type_name: info.name,

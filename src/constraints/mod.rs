@@ -15,14 +15,18 @@ mod laws;
 mod lists;
 #[cfg(test)]
 mod oracle;
+mod references;
 mod set;
 mod shape_fit;
 mod stencil;
 
 pub use batch::Four;
 pub(crate) use batch::{Batch, ProjectPair};
+pub use references::{ReferenceId, ReferenceKind, ReferenceShape};
 pub use set::{ConstraintId, ConstraintSet, ConstraintView, Edited, NewConstraints};
 pub use stencil::Stencil;
+
+use std::sync::Arc;
 
 use crate::error::{Error, Result, Status};
 use crate::linalg::lanes::{Mask, V4};
@@ -138,6 +142,9 @@ pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// Another name that signatures may use for it.
     const ALIAS: Option<&'static str> = None;
 
+    /// The kind of the reference shape whose id the first scalar is; `None`: the type has none.
+    const REFERENCE: Option<ReferenceKind> = None;
+
     /// Captures the rest state of `x` and appends the default scalars.
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self;
 
@@ -156,6 +163,10 @@ pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
 
     /// Called when the scalars were edited, before anything else is asked.
     fn scalars_changed(&mut self, _scalars: &[f64]) {}
+
+    /// Hands over the reference shape that the scalars name, after [`Self::at_rest`] and [`Self::scalars_changed`]. Not called
+    /// where [`Self::REFERENCE`] is none.
+    fn refer_to(&mut self, _shape: &Arc<ReferenceShape>) {}
 
     /// Writes the coefficients, row by row (`row_count * k`), into zeroed memory. Only called for [`Rows::Linear`].
     fn rows(&self, _scalars: &[f64], _coefficients: &mut [f64]) {}
@@ -284,10 +295,17 @@ struct Entry {
     new_batch: fn() -> Box<dyn Batch>,
     /// Refuses scalars outside the type's domain.
     check_scalars: fn(&[f64]) -> Result<()>,
+    reference: Option<ReferenceKind>,
 }
 
 const fn entry<T: Constraint>() -> Entry {
-    Entry { info: &T::INFO, alias: T::ALIAS, new_batch: TypedBatch::<T>::new_box, check_scalars: T::check_scalars }
+    Entry {
+        info: &T::INFO,
+        alias: T::ALIAS,
+        new_batch: TypedBatch::<T>::new_box,
+        check_scalars: T::check_scalars,
+        reference: T::REFERENCE,
+    }
 }
 
 /// Declares the modules and the registry. `cargo fmt` does not see through it: format these files by name.
@@ -331,6 +349,8 @@ registry! {
     on_line::OnLine,
     equal_lengths::EqualLengths,
     orientation::Orientation,
+    on_curve::OnCurve,
+    on_mesh::OnMesh,
 }
 
 /// Types that are projected together where they are on the same points, in the order of the registry.

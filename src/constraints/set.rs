@@ -1,8 +1,11 @@
 //! All constraints of a model: ids, weights and the batches of every type.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use super::{Batch, PAIRS, ProjectPair, REGISTRY, TypeIndex, TypeInfo};
+use super::references::References;
+use super::{Batch, PAIRS, ProjectPair, REGISTRY, ReferenceId, ReferenceShape, TypeIndex, TypeInfo};
 use crate::error::{Error, Result, Status, finite};
 
 /// The number of a constraint: they count up from 0 and are never reused.
@@ -95,6 +98,7 @@ pub struct ConstraintSet {
     places: Vec<Option<Place>>,
     /// The number of slots that are removed but not yet dropped.
     removed_count: usize,
+    references: References,
 }
 
 impl Default for ConstraintSet {
@@ -110,6 +114,7 @@ impl Default for ConstraintSet {
             groups: REGISTRY.iter().map(|entry| group(entry.new_batch)).collect(),
             places: Vec::new(),
             removed_count: 0,
+            references: References::default(),
         }
     }
 }
@@ -127,6 +132,7 @@ impl Clone for ConstraintSet {
             groups: self.groups.iter().map(copy).collect(),
             places: self.places.clone(),
             removed_count: self.removed_count,
+            references: self.references.clone(),
         }
     }
 }
@@ -148,12 +154,22 @@ impl ConstraintSet {
         self.places.get(id).is_some_and(Option::is_some)
     }
 
+    /// The number of references.
+    pub fn reference_count(&self) -> usize {
+        self.references.len()
+    }
+
+    /// Adds a shape for constraints to refer to.
+    pub fn add_reference(&mut self, shape: ReferenceShape) -> ReferenceId {
+        self.references.push(shape)
+    }
+
     /// Adds constraints of one type, at rest where `points` are now, all or none. Their ids follow each other from the
     /// one returned. An error is placed at `name_of` the id that the constraint would have got.
     ///
     /// # Errors
     /// The type is unknown, a count does not fit, an index is out of range, a weight is negative or not finite, a scalar
-    /// is outside its domain. Nothing is added then.
+    /// is outside its domain or names no reference of the type's kind. Nothing is added then.
     pub fn add(
         &mut self,
         points: &[DVec3],
@@ -166,12 +182,22 @@ impl ConstraintSet {
         };
         self.check_new(points.len(), type_index, new, name_of)?;
         let first_id = self.places.len();
+        // Where a type has a reference, the default is the first of its kind.
+        let first_reference = match REGISTRY[type_index.0 as usize].reference {
+            Some(kind) if new.scalar_counts.is_empty() && !new.counts.is_empty() => {
+                Some([self.references.first(kind)? as f64])
+            }
+            _ => None,
+        };
+        let references = &self.references;
         let group = &mut self.groups[type_index.0 as usize];
         for (i, (indices, scalars)) in new.each().enumerate() {
             let slot = group.batch.len();
-            group.batch.push(points, indices);
+            let scalars = scalars.or(first_reference.as_ref().map(<[f64; 1]>::as_slice));
+            let reference = named_reference(references, type_index, scalars)?;
+            group.batch.push(points, indices, reference);
             if let Some(scalars) = scalars {
-                group.batch.set_scalars(slot, scalars);
+                group.batch.set_scalars(slot, scalars, reference);
             }
             group.ids.push(self.places.len() as u32);
             group.weights.push(new.weight(i));
@@ -200,11 +226,12 @@ impl ConstraintSet {
         self.check_edit(type_name, id, scalars)?;
         let place = self.place(id)?;
         let slot = place.slot as usize;
+        let reference = named_reference(&self.references, place.type_index, Some(scalars))?;
         let group = &mut self.groups[place.type_index.0 as usize];
         if group.batch.scalars(slot) == scalars {
             return Ok(Edited::Nothing);
         }
-        Ok(if group.batch.set_scalars(slot, scalars) { Edited::Rows } else { Edited::Targets })
+        Ok(if group.batch.set_scalars(slot, scalars, reference) { Edited::Rows } else { Edited::Targets })
     }
 
     /// Refuses what [`ConstraintSet::edit`] would refuse.
@@ -214,7 +241,8 @@ impl ConstraintSet {
     pub fn check_edit(&self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<()> {
         let place = self.editable_place(type_name, id)?;
         let group = &self.groups[place.type_index.0 as usize];
-        check_scalars(place.type_index, group.batch.indices(place.slot as usize).len(), scalars)
+        check_scalars(place.type_index, group.batch.indices(place.slot as usize).len(), scalars)?;
+        named_reference(&self.references, place.type_index, Some(scalars)).map(drop)
     }
 
     /// Sets the weight of a constraint; returns true if it is another one than before.
@@ -263,6 +291,23 @@ impl ConstraintSet {
             return Err(Error::new(Status::InvalidValue, reason));
         }
         Ok(())
+    }
+
+    /// Forgets the constraints from `first` on as if they had never been added: those of the last call of [`Self::add`].
+    pub(crate) fn take_back(&mut self, first: ConstraintId) {
+        for id in first..self.places.len() {
+            if let Some(place) = self.places[id] {
+                self.drop_place(id, place);
+            }
+        }
+        self.places.truncate(first);
+        self.compact();
+    }
+
+    /// The types of soft constraints, in registry order.
+    pub(crate) fn soft_types(&self) -> impl Iterator<Item = &'static TypeInfo> + '_ {
+        let has_soft = |group: &&Group| group.is_hard.iter().zip(&group.is_removed).any(|(hard, gone)| !hard && !gone);
+        self.groups.iter().filter(has_soft).map(|group| group.batch.info())
     }
 
     /// The number of hard constraints.
@@ -446,7 +491,10 @@ impl ConstraintSet {
                     }
                 }
                 check_weight(new.weight(i))?;
-                scalars.map_or(Ok(()), |scalars| check_scalars(type_index, indices.len(), scalars))
+                if let Some(scalars) = scalars {
+                    check_scalars(type_index, indices.len(), scalars)?;
+                }
+                named_reference(&self.references, type_index, scalars).map(drop)
             };
             check().map_err(|error| error.at(name_of(i)))?;
         }
@@ -480,6 +528,20 @@ pub struct ConstraintView<'a> {
     pub scalars: &'a [f64],
     /// True if its rest state is degenerate.
     pub is_degenerate: bool,
+}
+
+/// The reference that the scalars of a constraint name; by default the first of the kind that the type takes.
+fn named_reference<'a>(
+    references: &'a References,
+    type_index: TypeIndex,
+    scalars: Option<&[f64]>,
+) -> Result<Option<&'a Arc<ReferenceShape>>> {
+    let Some(kind) = REGISTRY[type_index.0 as usize].reference else { return Ok(None) };
+    let id = match scalars.and_then(<[f64]>::first) {
+        Some(scalar) => *scalar,
+        None => references.first(kind)? as f64,
+    };
+    references.named(kind, id).map(Some)
 }
 
 fn check_weight(weight: f64) -> Result<()> {

@@ -3,6 +3,7 @@
 //! The order of points and faces, and every bit of a coordinate, survive reading and writing: point `i` of a file is
 //! point `i` of the [`Mesh`], of a problem made from it, and of the file written back.
 
+mod closest;
 pub mod file;
 pub mod fit;
 pub mod measure;
@@ -12,6 +13,7 @@ pub mod patterns;
 mod ply;
 mod topology;
 
+pub use closest::ClosestPoints;
 pub use file::Format;
 pub use topology::{BoundaryChain, Neighbours, Topology};
 

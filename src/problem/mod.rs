@@ -4,13 +4,17 @@
 //! constraint is taken from `points`. Validation names the place that errs:
 //! `constraints[17].indices[2]: 5000 is out of range for 4096 points`.
 
+mod faces;
 mod forces;
 mod json;
 mod objective;
 pub mod recipes;
+mod references;
 
+pub use faces::Faces;
 pub use forces::{Force, ForceId, ForceSet};
 pub use objective::{Fairness, FairnessRows, Handle, Objective};
+pub use references::Reference;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -63,20 +67,43 @@ pub enum ForceKind {
     Gravity,
     /// The point `id`.
     Vertex,
+    /// The `faces`: `magnitude` is a pressure, a force per area along their normals. It follows the points.
+    Pressure,
+    /// The corners of the `faces`: a force of length `magnitude` along the normal of each. It follows the points.
+    Normal,
 }
 
-/// One force as the user states it.
+impl ForceKind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Gravity => "gravity",
+            Self::Vertex => "vertex",
+            Self::Pressure => "pressure",
+            Self::Normal => "normal",
+        }
+    }
+}
+
+/// One force as the user states it; in dynamic mode it acts as an acceleration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ForceSignature {
     /// What it acts on.
     pub kind: ForceKind,
-    /// Its components; in dynamic mode it acts as an acceleration.
-    pub force: [f64; 3],
-    /// The point that a vertex force acts on; absent for gravity.
+    /// The components of gravity or a vertex force; absent for the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<[f64; 3]>,
+    /// The point that a vertex force acts on; absent for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<u32>,
+    /// A pressure, or the length of a normal force; negative: against the normals. Absent for the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub magnitude: Option<f64>,
+    /// The faces that a pressure or a normal force acts on, each as at least 3 point indices; absent for the others. Normals
+    /// point to where the corners run counter-clockwise.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faces: Vec<Vec<u32>>,
 }
 
 /// New scalars of a constraint from a time step on: a handle that is moved, a length that changes.
@@ -161,6 +188,9 @@ pub struct Problem {
     pub timestep: f64,
     /// Coordinates `[x, y, z]` in model units.
     pub points: Vec<[f64; 3]>,
+    /// Shapes that constraints refer to, in the order of their ids.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub references: Vec<Reference>,
     /// The constraints, in the order of their ids.
     #[serde(default)]
     pub constraints: Vec<Signature>,
@@ -197,6 +227,7 @@ impl Default for Problem {
             damping: 1.0,
             timestep: 1.0,
             points: Vec::new(),
+            references: Vec::new(),
             constraints: Vec::new(),
             forces: Vec::new(),
             edits: Vec::new(),
@@ -296,6 +327,10 @@ impl Problem {
             in_range(format!("edges[{i}]"), edge)?;
         }
         let mut constraints = ConstraintSet::default();
+        for (i, reference) in self.references.iter().enumerate() {
+            let place = |error: Error| error.at(reference.kind()).at(format!("references[{i}]"));
+            constraints.add_reference(reference.shape().map_err(place)?);
+        }
         for signature in &self.constraints {
             let scalars = signature.scalars.as_deref();
             let scalar_count = scalars.map(<[f64]>::len);

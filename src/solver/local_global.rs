@@ -97,15 +97,21 @@ impl Solver {
     fn begin(&mut self) -> Result<()> {
         let (Some(system), Some(dynamics)) = (&mut self.system, &self.dynamics) else { return Ok(()) };
         system.linear.restart_count();
-        let Workspace { forces, external, momentum, kept, start } = &mut self.workspace;
+        let Workspace { forces, external, steady, normals, momentum, kept, start } = &mut self.workspace;
         start.clear();
         start.extend_from_slice(&self.points);
         forces.resize(self.points.len(), DVec3::ZERO);
-        let has_forces = self.forces.sum_into(forces);
+        let follows = self.forces.has_forces_on_faces();
+        let has_forces = self.forces.sum_into(forces) || follows;
         let (inertia, step) = (dynamics.inertia(), dynamics.timestep);
         external.clear();
+        steady.clear();
         match dynamics.mode {
             Mode::Static if has_forces => {
+                if follows {
+                    steady.extend(forces.iter().map(|force| inertia * step * step * *force));
+                    self.forces.add_forces_on_faces(&self.points, normals, forces);
+                }
                 system.check_resistance(forces)?;
                 external.extend(forces.iter().map(|force| inertia * step * step * *force));
             }
@@ -115,7 +121,15 @@ impl Solver {
                 let moved = self.points.iter().zip(&dynamics.velocities).zip(&*forces);
                 momentum.extend(moved.map(|((x, v), force)| *x + step * *v + step * step * *force));
                 external.extend(momentum.iter().map(|y| inertia * *y));
+                if follows {
+                    steady.extend_from_slice(external);
+                    forces.fill(DVec3::ZERO);
+                    self.forces.add_forces_on_faces(&self.points, normals, forces);
+                }
                 self.points.copy_from_slice(momentum);
+                if follows {
+                    self.points.iter_mut().zip(&*forces).for_each(|(x, force)| *x += step * step * *force);
+                }
             }
         }
         // The next call exchanges them, and should not allocate then.
@@ -216,6 +230,9 @@ impl Solver {
 
     /// What accelerates the solve that begins, with an empty history; `automatic` is what `Automatic` means for it.
     fn begin_acceleration(&mut self, automatic: Acceleration) -> Option<Accelerator> {
+        if self.forces.has_forces_on_faces() {
+            return None;
+        }
         let wanted = match self.acceleration {
             Acceleration::Automatic => automatic,
             stated => stated,
@@ -282,9 +299,24 @@ impl Solver {
     /// Solves for new points, which the system keeps in hand.
     fn solve_for_plain_step(&mut self, is_parallel: bool, clock: &mut Clock) {
         let started = Instant::now();
+        self.follow_points();
         let Some(system) = &mut self.system else { return };
         system.global_step(&self.points, &self.workspace.external, is_parallel);
         clock.global_seconds += started.elapsed().as_secs_f64();
+    }
+
+    /// Brings the forces on faces in `external` to the current points.
+    fn follow_points(&mut self) {
+        let factor = self.force_factor();
+        let Workspace { forces, external, steady, normals, .. } = &mut self.workspace;
+        if steady.is_empty() {
+            return;
+        }
+        forces.fill(DVec3::ZERO);
+        self.forces.add_forces_on_faces(&self.points, normals, forces);
+        for ((external, steady), force) in external.iter_mut().zip(&*steady).zip(&*forces) {
+            *external = *steady + factor * *force;
+        }
     }
 
     /// Moves to the points in hand; returns the largest move.
@@ -294,14 +326,16 @@ impl Solver {
 
     /// The part of the energy that is not the constraints'.
     pub(super) fn external_energy(&self) -> f64 {
-        let Workspace { external, momentum, .. } = &self.workspace;
-        match &self.dynamics {
+        let Workspace { external, steady, momentum, .. } = &self.workspace;
+        let external = if steady.is_empty() { external } else { steady };
+        let others = match &self.dynamics {
             Some(dynamics) if dynamics.mode == Mode::Dynamic => {
                 let squares = self.points.iter().zip(momentum).map(|(x, y)| x.distance_squared(*y));
                 0.5 * dynamics.inertia() * squares.sum::<f64>()
             }
             _ => -external.iter().zip(&self.points).map(|(force, x)| force.dot(*x)).sum::<f64>(),
-        }
+        };
+        others - self.work_of_pressures()
     }
 }
 

@@ -3,7 +3,8 @@
 //! One iteration: the *local step* projects the points onto every constraint; the *global step* solves
 //! `N x = Aᵀp + external` for new points. Static: `N = Σ s AᵀA`, `external` is the sum of forces. Dynamic: `N` gains the
 //! inertia `M = (m/δ₀²) I` and `external` is `M y`, `y` being where momentum alone would take the points. Either way an
-//! iteration with nearest projections never raises the energy. Sources: Bouaziz et al. 2012 and 2014; Deuss et al. 2015.
+//! iteration with nearest projections never raises the energy. Forces on faces follow the points: `external` has them as they
+//! were at the points that the iteration begins at, and that promise does not hold with them. Sources: Bouaziz et al. 2012 and 2014; Deuss et al. 2015.
 
 mod acceleration;
 mod anderson;
@@ -28,9 +29,9 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
-use crate::constraints::{ConstraintId, ConstraintSet, ConstraintView, Edited, NewConstraints};
+use crate::constraints::{ConstraintId, ConstraintSet, ConstraintView, Edited, NewConstraints, ReferenceId};
 use crate::error::{Error, Result, Status, finite};
-use crate::problem::{Acceleration, Force, ForceId, ForceSet, Mode, Problem};
+use crate::problem::{Acceleration, Force, ForceId, ForceSet, Mode, Problem, Reference};
 use acceleration::Accelerator;
 use exploration::Explorer;
 use system::{System, SystemCounts};
@@ -94,9 +95,13 @@ impl Dynamics {
 struct Workspace {
     /// The sum of forces on each point.
     forces: Vec<DVec3>,
-    /// `M y`, one entry per point; empty in static mode without forces.
+    /// `M y` or the forces, one entry per point; empty in static mode without forces.
     external: Vec<DVec3>,
-    /// Where momentum alone takes the points (dynamic mode).
+    /// `external` without the forces on faces; empty where there are none.
+    steady: Vec<DVec3>,
+    /// Room for the normals of points; all zero.
+    normals: Vec<DVec3>,
+    /// Where momentum and the forces that are not on faces take the points (dynamic mode).
     momentum: Vec<DVec3>,
     /// `external` and `momentum` of the call before, for when this one is refused.
     kept: [Vec<DVec3>; 2],
@@ -195,6 +200,19 @@ impl Solver {
         }
     }
 
+    /// The number of references.
+    pub fn reference_count(&self) -> usize {
+        self.constraints.reference_count()
+    }
+
+    /// Adds a shape that constraints refer to by the id returned, their first scalar.
+    ///
+    /// # Errors
+    /// As [`Reference::shape`].
+    pub fn add_reference(&mut self, reference: &Reference) -> Result<ReferenceId> {
+        Ok(self.constraints.add_reference(reference.shape()?))
+    }
+
     /// The number of constraint ids given out, removed ones included.
     pub fn constraint_count(&self) -> usize {
         self.constraints.id_count()
@@ -220,7 +238,7 @@ impl Solver {
     ///
     /// # Errors
     /// The type is unknown, a count does not fit, an index is out of range, a weight is negative or not finite, or a
-    /// scalar is outside its domain.
+    /// scalar is outside its domain or names no reference of the kind that the type takes.
     pub fn add_constraints(&mut self, new: NewConstraints<'_>) -> Result<ConstraintId> {
         let name_of = |id| format!("constraint {id} (\"{}\")", new.type_name);
         let first = self.constraints.add(&self.points, new, name_of)?;
@@ -228,6 +246,11 @@ impl Solver {
             self.invalidate();
         }
         Ok(first)
+    }
+
+    /// Takes back the constraints of the last call of [`Solver::add_constraints`], which begin at `first`: their ids are free again.
+    pub(crate) fn take_back_constraints(&mut self, first: ConstraintId) {
+        self.constraints.take_back(first);
     }
 
     /// Refuses an edit by what `type_name` and `id` alone decide.
@@ -308,7 +331,7 @@ impl Solver {
     /// Adds a force.
     ///
     /// # Errors
-    /// It is not finite, or its point is out of range.
+    /// It is not finite, a point is out of range, there is no face, or one of fewer than 3 corners.
     pub fn add_force(&mut self, force: Force) -> Result<ForceId> {
         self.forces.add(force, self.points.len())
     }
@@ -319,6 +342,14 @@ impl Solver {
     /// `id` is no vertex force, the force is not finite, or the point is out of range.
     pub fn edit_vertex_force(&mut self, id: ForceId, force: DVec3, point: u32) -> Result<()> {
         self.forces.edit_vertex_force(id, force, point, self.points.len())
+    }
+
+    /// Replaces the magnitude of a force on faces: a pressure, or the length of a normal force.
+    ///
+    /// # Errors
+    /// `id` is no force on faces, or the magnitude is not finite.
+    pub fn edit_force_magnitude(&mut self, id: ForceId, magnitude: f64) -> Result<()> {
+        self.forces.edit_magnitude(id, magnitude)
     }
 
     /// Removes a force; its id is never given out again.
@@ -383,7 +414,8 @@ impl Solver {
 
     /// Sets how the following solves are accelerated, and how many iterations are remembered for that (at most 64; 0: the
     /// method's default). `Automatic`, which a new solver has, is `None` in [`Solver::solve`] and `QuasiNewton` in
-    /// [`Solver::solve_until`]. Each call, and so each time step, begins with an empty history.
+    /// [`Solver::solve_until`]. Each call, and so each time step, begins with an empty history. With forces on faces, which
+    /// not every energy has as its slope, all iterations are plain whatever is set.
     ///
     /// # Errors
     /// The memory is beyond its range.
@@ -418,15 +450,33 @@ impl Solver {
 
     /// The energy at the current points: `½ Σ s ‖A x − P(x)‖²`, in static mode minus the potential of the forces as they
     /// are now, in dynamic mode plus `½ (x−y)ᵀ M (x−y)` with the `y` of the last step.
+    ///
+    /// A pressure `p` counts as `−p V`, `V` being the volume that its faces enclose with the origin: its potential where they
+    /// are closed. A normal force has no potential and counts for nothing.
     pub fn energy(&self) -> f64 {
         let is_dynamic = self.dynamics.as_ref().is_some_and(|dynamics| dynamics.mode == Mode::Dynamic);
-        let external = if is_dynamic { self.external_energy() } else { -self.work_of_forces() };
+        let external =
+            if is_dynamic { self.external_energy() } else { -self.work_of_forces() - self.work_of_pressures() };
         System::constraint_energy(&self.constraints, &self.points) + external
     }
 
-    /// `external · x` of static mode, from the forces as they are now.
+    /// What `external` has of a force of length 1.
+    fn force_factor(&self) -> f64 {
+        self.dynamics.as_ref().map_or(1.0, |dynamics| dynamics.inertia() * dynamics.timestep.powi(2))
+    }
+
+    /// Pressure times volume, as it enters the energy.
+    fn work_of_pressures(&self) -> f64 {
+        if self.forces.has_forces_on_faces() {
+            self.force_factor() * self.forces.work_of_pressures(&self.points)
+        } else {
+            0.0
+        }
+    }
+
+    /// `external · x` of static mode, from the forces as they are now that are not on faces.
     fn work_of_forces(&self) -> f64 {
-        let factor = self.dynamics.as_ref().map_or(1.0, |dynamics| dynamics.inertia() * dynamics.timestep.powi(2));
+        let factor = self.force_factor();
         let mut forces = vec![DVec3::ZERO; self.points.len()];
         self.forces.sum_into(&mut forces);
         factor * forces.iter().zip(&self.points).map(|(force, x)| force.dot(*x)).sum::<f64>()

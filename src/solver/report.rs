@@ -62,6 +62,8 @@ pub enum Outcome {
     Stalled = 4,
     /// A force acts along a motion that no constraint resists; the points did not move.
     Unbounded = 5,
+    /// Hard constraints contradict each other; [`super::Found::conflicts`] names a small set of them, and the points meet the others.
+    Infeasible = 6,
 }
 
 impl Outcome {
@@ -74,6 +76,7 @@ impl Outcome {
             Self::Cancelled => "cancelled",
             Self::Stalled => "stalled",
             Self::Unbounded => "unbounded",
+            Self::Infeasible => "infeasible",
         }
     }
 }

@@ -126,6 +126,39 @@ impl Abi {
         unsafe { shapeop_editVertexForce(self.0, id, force.as_mut_ptr(), point) };
     }
 
+    pub fn polyline(&self, points: &[f64], is_closed: c_int) -> c_int {
+        // SAFETY: a live slice.
+        unsafe { shapeop_addReferencePolyline(self.0, points.as_ptr(), count(points) / 3, is_closed) }
+    }
+
+    pub fn mesh(&self, points: &[f64], triangles: &[c_int]) -> c_int {
+        let (points_data, triangles_data) = (points.as_ptr(), triangles.as_ptr());
+        // SAFETY: live slices.
+        unsafe {
+            shapeop_addReferenceMesh(self.0, points_data, count(points) / 3, triangles_data, count(triangles) / 3)
+        }
+    }
+
+    /// A polyline and a mesh, so that constraints of any type can be added.
+    pub fn any_references(&self) {
+        let points = [0.0, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0, 2.0, 1.0];
+        assert_eq!((self.polyline(&points, 1), self.mesh(&points, &[0, 1, 2])), (0, 1));
+    }
+
+    /// A pressure on faces of the given numbers of corners.
+    pub fn pressure(&self, indices: &[c_int], counts: &[c_int], pressure: f64) -> c_int {
+        let (data, counts_data) = (indices.as_ptr(), counts.as_ptr());
+        // SAFETY: live slices.
+        unsafe { shapeop_addPressure(self.0, data, count(indices), counts_data, count(counts), pressure) }
+    }
+
+    /// A force along the normals of faces of the given numbers of corners.
+    pub fn normal_force(&self, indices: &[c_int], counts: &[c_int], magnitude: f64) -> c_int {
+        let (data, counts_data) = (indices.as_ptr(), counts.as_ptr());
+        // SAFETY: live slices.
+        unsafe { shapeop_addNormalForce(self.0, data, count(indices), counts_data, count(counts), magnitude) }
+    }
+
     pub fn init(&self) -> c_int {
         shapeop_init(self.0)
     }

@@ -85,7 +85,15 @@ pub(crate) enum Call {
     AddGravity(Op, Option<[f64; 3]>),
     AddVertexForce(Op, Option<[f64; 3]>, c_int),
     EditVertexForce(Op, c_int, Option<[f64; 3]>, c_int),
+    /// Indices, counts, pressure.
+    AddPressure(Op, Array<c_int>, Array<c_int>, f64),
+    /// Indices, counts, magnitude.
+    AddNormalForce(Op, Array<c_int>, Array<c_int>, f64),
+    EditForceMagnitude(Op, c_int, f64),
     RemoveForce(Op, c_int),
+    AddPolyline(Op, Array<f64>, c_int),
+    /// Coordinates, triangles.
+    AddMesh(Op, Array<f64>, Array<c_int>),
     SolveUntil(Op, Option<Options>, Option<u32>, Option<u32>),
     Energy(Op, bool),
     Violations(Op, bool, c_int),
@@ -188,6 +196,27 @@ fn indices() -> impl Strategy<Value = Array<c_int>> {
     prop_oneof![6 => array(0..MOST_POINTS as c_int, 0..7), 1 => array(integer(), 0..7)]
 }
 
+/// Faces of which most are triangles or quads of a solver's points.
+fn faces() -> impl Strategy<Value = (Array<c_int>, Array<c_int>)> {
+    let right = (3..5_i32, 1..4_usize, prop::collection::vec(0..MOST_POINTS as c_int, 12)).prop_map(
+        |(corners, faces, indices)| {
+            (Array::Right(indices[..corners as usize * faces].to_vec()), Array::Right(vec![corners]))
+        },
+    );
+    prop_oneof![4 => right, 1 => (indices(), array(integer(), 0..4))]
+}
+
+/// Whole triples only, as the count of an array argument counts points or triangles.
+fn triples<T: Clone + std::fmt::Debug>(array: Array<T>) -> Array<T> {
+    match array {
+        Array::Right(mut values) => {
+            values.truncate(values.len() / 3 * 3);
+            Array::Right(values)
+        }
+        other => other,
+    }
+}
+
 fn struct_size(right: usize) -> impl Strategy<Value = u32> {
     prop_oneof![8 => Just(right as u32), 1 => 0..=right as u32, 1 => any::<u32>(), 1 => right as u32..4100]
 }
@@ -258,6 +287,13 @@ pub(crate) fn call() -> impl Strategy<Value = Call> {
         2 => (op(), force(), integer()).prop_map(|(o, f, id)| Call::AddVertexForce(o, f, id)),
         2 => (op(), integer(), force(), integer()).prop_map(|(o, f_id, f, id)| Call::EditVertexForce(o, f_id, f, id)),
         2 => (op(), integer()).prop_map(|(o, id)| Call::RemoveForce(o, id)),
+        3 => (op(), faces(), number()).prop_map(|(o, (i, c), x)| Call::AddPressure(o, i, c, x)),
+        3 => (op(), faces(), number()).prop_map(|(o, (i, c), x)| Call::AddNormalForce(o, i, c, x)),
+        2 => (op(), integer(), number()).prop_map(|(o, id, x)| Call::EditForceMagnitude(o, id, x)),
+        3 => (op(), points(), prop_oneof![9 => 0..2, 1 => integer()])
+            .prop_map(|(o, p, closed)| Call::AddPolyline(o, triples(p), closed)),
+        3 => (op(), points(), prop_oneof![5 => array(0..3_i32, 3..20), 1 => array(integer(), 0..20)])
+            .prop_map(|(o, p, t)| Call::AddMesh(o, triples(p), triples(t))),
     ];
     let solves = prop_oneof![
         4 => op().prop_map(Call::Init),

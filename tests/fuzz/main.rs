@@ -39,7 +39,7 @@ impl Room {
 #[derive(Clone, Debug, PartialEq)]
 struct Picture {
     points: Vec<u64>,
-    counts: [c_int; 4],
+    counts: [c_int; 5],
     energy: Result<u64, c_int>,
 }
 
@@ -62,6 +62,7 @@ fn picture(op: *mut ShapeOpSolver) -> Option<Picture> {
     let counts = [
         shapeop_constraintCount(op),
         shapeop_forceCount(op),
+        shapeop_referenceCount(op),
         shapeop_unconstrainedCount(op),
         (0..40).filter(|id| shapeop_isConstraint(op, *id) == 1).count() as c_int,
     ];
@@ -104,6 +105,11 @@ impl Own {
             // SAFETY: as long as it says, only read.
             unsafe { shapeop_setPoints(*op, points.as_ptr().cast_mut(), MOST_POINTS as c_int) };
         }
+        // SAFETY: as long as they say.
+        unsafe {
+            shapeop_addReferencePolyline(ops[0], points.as_ptr(), 5, 1);
+            shapeop_addReferenceMesh(ops[0], points.as_ptr(), 5, [0, 1, 2, 2, 3, 4].as_ptr(), 2);
+        }
         Self { ops, constraints: Vec::new() }
     }
 
@@ -113,6 +119,11 @@ impl Own {
             Op::Value(value) => ptr::without_provenance_mut(*value as usize),
         }
     }
+}
+
+/// The number of triples of an array whose values are whole triples, or what is stated in its place.
+fn triples<T>(array: &Array<T>) -> c_int {
+    if let Array::Right(values) = array { values.len() as c_int / 3 } else { array.count() }
 }
 
 /// Makes a call. Returns true if it was refused.
@@ -262,7 +273,23 @@ fn make(call: &Call, own: &mut Own) -> Result<bool, String> {
                 shapeop_editVertexForce(at(op), *force_id, vector(force), *id);
                 says(at(op))
             }
+            Call::AddPressure(op, indices, counts, pressure) => {
+                let (data, count) = (indices.data(), indices.count());
+                Ok(shapeop_addPressure(at(op), data, count, counts.data(), counts.count(), *pressure) < 0)
+            }
+            Call::AddNormalForce(op, indices, counts, magnitude) => {
+                let (data, count) = (indices.data(), indices.count());
+                Ok(shapeop_addNormalForce(at(op), data, count, counts.data(), counts.count(), *magnitude) < 0)
+            }
+            Call::EditForceMagnitude(op, id, magnitude) => refused(shapeop_editForceMagnitude(at(op), *id, *magnitude)),
             Call::RemoveForce(op, id) => refused(shapeop_removeForce(at(op), *id)),
+            Call::AddPolyline(op, points, is_closed) => {
+                Ok(shapeop_addReferencePolyline(at(op), points.data(), triples(points), *is_closed) < 0)
+            }
+            Call::AddMesh(op, points, indices) => {
+                let (data, count) = (points.data(), triples(points));
+                Ok(shapeop_addReferenceMesh(at(op), data, count, indices.data(), triples(indices)) < 0)
+            }
             Call::SolveUntil(op, options, stop_at, report_size) => {
                 let mut options_room = Room::stating(options.as_ref().map_or(0, |options| options.struct_size));
                 if let Some(Options { max_iterations, tolerance, time_budget_seconds, .. }) = options {
@@ -340,6 +367,8 @@ fn named(call: &Call, own: &Own) -> *mut ShapeOpSolver {
         | Call::RemoveConstraint(op, _) => Some(op),
         Call::IsConstraint(op, _) | Call::IsDegenerate(op, _) | Call::AddGravity(op, _) => Some(op),
         Call::AddVertexForce(op, ..) | Call::EditVertexForce(op, ..) | Call::RemoveForce(op, _) => Some(op),
+        Call::AddPressure(op, ..) | Call::AddNormalForce(op, ..) | Call::EditForceMagnitude(op, ..) => Some(op),
+        Call::AddPolyline(op, ..) | Call::AddMesh(op, ..) => Some(op),
         Call::SolveUntil(op, ..) | Call::Energy(op, _) | Call::Violations(op, ..) => Some(op),
     };
     op.map_or(ptr::null_mut(), |op| own.named(op))

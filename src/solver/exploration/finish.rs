@@ -17,16 +17,23 @@ use glam::DVec3;
 use super::derivatives::{Derivatives, add_transposed};
 use super::local::{Item, Local};
 use super::quadratic::Quadratic;
-use crate::error::Result;
+use crate::error::{Error, Result, Status};
 use crate::linalg::cholesky::{Analysis, Factor};
 use crate::linalg::symmetric::SymmetricMatrix;
 
 /// Newton steps at most.
 const STEPS: u32 = 30;
 
-/// Multiplier updates of one linear problem at most, and by how much they are to lower its residual.
-const UPDATES: u32 = 8;
-const UPDATED_ENOUGH: f64 = 1e-4;
+/// Multiplier updates of one linear problem at most, and by how much they are to lower its residual: for a Newton step, and for a
+/// derivative that is an answer.
+#[derive(Clone, Copy)]
+struct Updates {
+    most: u32,
+    enough: f64,
+}
+
+const OF_A_STEP: Updates = Updates { most: 8, enough: 1e-4 };
+const OF_AN_ANSWER: Updates = Updates { most: 60, enough: 1e-10 };
 
 /// The penalty of the finish over that of the sweeps. Of 1, 5, 20, 100 and 1000, 5 needs the fewest Newton steps on the surfaces of Fig. 12
 /// and succeeds earliest: stiffer, the steps follow the curved sets in small pieces.
@@ -121,14 +128,14 @@ impl Finish<'_> {
             let Some(next) = self.step(&state, system) else { break };
             state = next;
         }
-        let capped = self.capped(&state);
+        let capped = self.capped(&state.u);
         Ok(Finished { points: state.points, u: state.u, residuals: state.residuals, steps, factorisations, capped })
     }
 
     /// The number of constraints whose multiplier is at its cap.
-    fn capped(&self, state: &State) -> usize {
+    pub(super) fn capped(&self, u: &[DVec3]) -> usize {
         let at_cap = |(item, cap): &(&Item, &f64)| {
-            let squares: f64 = state.u[item.rows()].iter().map(|u| u.length_squared()).sum();
+            let squares: f64 = u[item.rows()].iter().map(|u| u.length_squared()).sum();
             self.penalty * item.scale * squares.sqrt() >= (1.0 - 1e-9) * **cap
         };
         self.hard.items.iter().zip(self.caps).filter(at_cap).count()
@@ -139,9 +146,27 @@ impl Finish<'_> {
         self.state(points.to_vec(), u.to_vec()).residuals
     }
 
+    /// How the solution with the multipliers `m u` moves per gradient that is added to that of the objective, each times 1.
+    pub(super) fn answers(
+        &mut self,
+        points: &[DVec3],
+        u: &[DVec3],
+        gradients: &[Vec<DVec3>],
+        kept: &mut Kept,
+    ) -> Result<Vec<Vec<DVec3>>> {
+        let state = self.state(points.to_vec(), u.to_vec());
+        let Some(mut system) = self.system(&state, kept, &mut 0)? else {
+            let reason = "the solution is no strict minimum: it does not say how it answers";
+            return Err(Error::new(Status::InvalidValue, reason));
+        };
+        let none = vec![DVec3::ZERO; u.len()];
+        let answer = |gradient: &Vec<DVec3>| self.solve(&mut system, gradient, &none, &none, OF_AN_ANSWER).1.points;
+        Ok(gradients.iter().map(answer).collect())
+    }
+
     /// One step: a state that is nearer, or none.
     fn step(&mut self, state: &State, mut system: System) -> Option<State> {
-        let (first, whole) = self.solve(&mut system, &state.gradient, &state.excess, &state.u);
+        let (first, whole) = self.solve(&mut system, &state.gradient, &state.excess, &state.u, OF_A_STEP);
         let moved = |direction: &[DVec3], length: f64| -> Vec<DVec3> {
             state.points.iter().zip(direction).map(|(p, step)| *p + length * *step).collect()
         };
@@ -168,6 +193,7 @@ impl Finish<'_> {
     fn merit(&self, state: &State) -> f64 {
         let Residuals { primal, dual } = state.residuals;
         let merit = (primal / self.size).max(dual);
+        // NaN is not near.
         if merit.is_finite() { merit } else { f64::INFINITY }
     }
 
@@ -303,13 +329,20 @@ impl Finish<'_> {
 
     /// Solves the linearised conditions for steps of points and multipliers: `gradient` is that of the objective, `excess` and `u` are
     /// the state's. Returns the points' step of the first solve, and the whole.
-    pub(super) fn solve(&self, system: &mut System, gradient: &[DVec3], excess: &[DVec3], u: &[DVec3]) -> (Vec<DVec3>, Steps) {
+    fn solve(
+        &self,
+        system: &mut System,
+        gradient: &[DVec3],
+        excess: &[DVec3],
+        u: &[DVec3],
+        updates: Updates,
+    ) -> (Vec<DVec3>, Steps) {
         let n = gradient.len();
         let mut steps = Steps { points: vec![DVec3::ZERO; n], multipliers: vec![DVec3::ZERO; u.len()] };
         let mut first = Vec::new();
         let mut total = excess.to_vec();
         let (mut smallest, mut enough) = (f64::INFINITY, 0.0);
-        for _ in 0..UPDATES {
+        for _ in 0..updates.most {
             let mut sums = gradient.to_vec();
             let mut curved = vec![DVec3::ZERO; n];
             self.quadratic.apply(&steps.points, &mut curved);
@@ -331,7 +364,7 @@ impl Finish<'_> {
             }
             let residual = self.update_multipliers(system, excess, u, &mut steps, &mut total);
             if smallest.is_infinite() {
-                enough = UPDATED_ENOUGH * residual;
+                enough = updates.enough * residual;
             }
             // True for NaN too.
             if !(residual > enough && residual < smallest) {

@@ -83,7 +83,8 @@ struct Engine {
     extent: f64,
     tolerance: f64,
     changes: u32,
-    finish_seconds: f64,
+    /// How often caps were raised.
+    raises: u32,
 }
 
 /// What an exploration found besides the points.
@@ -105,6 +106,8 @@ pub struct Found {
     pub penalty: f64,
     /// Numeric factorisations.
     pub factorisations: u32,
+    /// True if the points are a solution: both residuals within the tolerance, no multiplier at its cap.
+    pub is_solution: bool,
     /// The terms of the objective.
     pub terms: ObjectiveTerms,
     /// A small set of hard constraints without which the others can be met; empty where all can.
@@ -154,6 +157,11 @@ impl Solver {
             explorer.is_outdated = true;
         }
         Ok(())
+    }
+
+    /// The rows of the fairness term.
+    pub fn fairness_rows(&self) -> &FairnessRows {
+        &self.explorer.rows
     }
 
     /// The objective in force.
@@ -257,6 +265,11 @@ impl Explorer {
         self.is_outdated = true;
     }
 
+    /// True if nothing changed since the last exploration.
+    fn is_current(&self) -> bool {
+        !(self.is_outdated || self.has_new_scalars || self.has_new_targets)
+    }
+
     /// To be called when scalars changed that rows do not depend on.
     pub(super) fn scalars_changed(&mut self) {
         self.has_new_scalars = true;
@@ -317,7 +330,7 @@ impl Explorer {
             extent,
             tolerance: objective.tolerance,
             changes: 0,
-            finish_seconds: 0.0,
+            raises: 0,
         })
     }
 }
@@ -373,7 +386,7 @@ impl Engine {
         // While a handle moves, frames come before digits.
         let may_finish = wants_finish && !(has_budget && explorer.has_new_targets);
         let (mut settled, mut next_finish, mut least, mut idle) = (0, SETTLED, f64::INFINITY, 0);
-        let mut is_done = false;
+        let mut capped_for = 0;
         while found.sweeps < options.max_iterations {
             let sweep = self.splitting.sweep(false);
             found.sweeps += 1;
@@ -401,7 +414,7 @@ impl Engine {
             }
             let is_near = sweep.primal <= NEAR * self.extent || idle > 3 * BALANCE;
             if may_finish && is_near && found.sweeps >= next_finish && (settled >= SETTLED || found.sweeps >= 4 * SETTLED) {
-                is_done = self.finish(&mut found, options, started)?;
+                let is_done = self.finish(&mut found, options, started)?;
                 solver.points.copy_from_slice(&self.splitting.points);
                 if is_done {
                     report.outcome = Outcome::Converged;
@@ -417,9 +430,21 @@ impl Engine {
                 report.outcome = Outcome::Converged;
                 break;
             }
-            self.balance(&sweep, &mut idle, found.sweeps, solver)?;
+            capped_for = if sweep.capped > 0 { capped_for + 1 } else { 0 };
+            if capped_for >= conflicts::PATIENCE && sweep.primal > self.tolerance * self.size {
+                capped_for = 0;
+                if self.raise_caps() {
+                    self.splitting.set_penalty(2.0 * self.splitting.penalty, &solver.constraints, false)?;
+                } else if may_finish {
+                    found.conflicts = self.find_conflicts();
+                    solver.points.copy_from_slice(&self.splitting.points);
+                    report.outcome = Outcome::Infeasible;
+                    break;
+                }
+            }
+            self.balance(&mut idle, found.sweeps, solver)?;
         }
-        self.judge(&mut found, is_done);
+        self.judge(&mut found);
         found.factorisations = self.splitting.factorisation_count - factorisations_before + found.factorisations;
         report.iterations = found.sweeps;
         report.evaluations = found.sweeps + found.newton_steps;
@@ -435,7 +460,7 @@ impl Engine {
     }
 
     /// Raises a penalty under which the sweeps go round in circles.
-    fn balance(&mut self, _sweep: &Sweep, idle: &mut u32, sweeps: u32, solver: &Solver) -> Result<()> {
+    fn balance(&mut self, idle: &mut u32, sweeps: u32, solver: &Solver) -> Result<()> {
         if *idle >= 5 * BALANCE && self.changes < MOST_CHANGES && sweeps.is_multiple_of(BALANCE) {
             self.splitting.set_penalty(4.0 * self.splitting.penalty, &solver.constraints, false)?;
             self.changes += 1;
@@ -446,60 +471,65 @@ impl Engine {
 
     /// Newton steps from the points in hand. True if a solution was found; what is nearer is kept in any case.
     fn finish(&mut self, found: &mut Found, options: &SolveOptions, started: Instant) -> Result<bool> {
-        let splitting = &mut self.splitting;
+        let splitting = &self.splitting;
         let penalty = finish::penalty_behind(splitting.penalty);
         let blocks = |local: &Local| local.items.iter().map(|item| 9 * item.point_count * item.point_count).sum::<usize>();
         if blocks(&splitting.soft) + blocks(&splitting.hard) > finish::MOST_ENTRIES {
             return Ok(false);
         }
-        let began = Instant::now();
-        let u: Vec<DVec3> = splitting.multipliers().iter().map(|u| splitting.penalty / penalty * *u).collect();
-        let mut finish = Finish {
-            quadratic: &splitting.quadratic,
-            soft: &mut splitting.soft,
-            hard: &mut splitting.hard,
-            caps: &splitting.caps,
-            penalty,
-            size: self.size,
-            force: self.force,
-            is_parallel: false,
-        };
-        let before = finish.residuals(&splitting.points, &u);
+        let (points, u) = (splitting.points.clone(), self.finish_multipliers());
         let mut goes_on = || {
             options.time_budget_seconds == 0.0 || started.elapsed().as_secs_f64() < options.time_budget_seconds
         };
-        let finished = finish.run(&splitting.points, &u, self.tolerance, &mut self.kept, &mut goes_on)?;
-        let Finished { points, u, residuals, steps, factorisations, capped } = finished;
+        let (tolerance, mut kept) = (self.tolerance, std::mem::take(&mut self.kept));
+        let mut finish = self.finish_of();
+        let before = finish.residuals(&points, &u);
+        let finished = finish.run(&points, &u, tolerance, &mut kept, &mut goes_on);
+        self.kept = kept;
+        let Finished { points, u, residuals, steps, factorisations, capped } = finished?;
         found.newton_steps += steps;
         found.factorisations += factorisations;
         let merit = |residuals: &Residuals| (residuals.primal / self.size).max(residuals.dual);
         let is_solution = residuals.are_within(self.tolerance, self.size) && capped == 0;
         if is_solution || merit(&residuals) < merit(&before) {
-            found.residuals = Some(residuals);
-            splitting.points = points;
-            splitting.resume(&u, penalty);
+            self.splitting.points = points;
+            self.splitting.resume(&u, penalty);
         }
-        self.finish_seconds = began.elapsed().as_secs_f64();
         Ok(is_solution)
     }
 
-    /// Computes afresh what the points are worth.
-    fn judge(&mut self, found: &mut Found, _is_done: bool) {
+    /// The finish of the splitting in hand.
+    fn finish_of(&mut self) -> Finish<'_> {
         let splitting = &mut self.splitting;
-        found.penalty = splitting.penalty;
-        let penalty = finish::penalty_behind(splitting.penalty);
-        let u: Vec<DVec3> = splitting.multipliers().iter().map(|u| splitting.penalty / penalty * *u).collect();
-        let mut finish = Finish {
+        Finish {
             quadratic: &splitting.quadratic,
             soft: &mut splitting.soft,
             hard: &mut splitting.hard,
             caps: &splitting.caps,
-            penalty,
+            penalty: finish::penalty_behind(splitting.penalty),
             size: self.size,
             force: self.force,
             is_parallel: false,
-        };
-        found.residuals = Some(finish.residuals(&splitting.points, &u));
+        }
+    }
+
+    /// The splitting's multipliers in the finish's scale.
+    fn finish_multipliers(&self) -> Vec<DVec3> {
+        let penalty = self.splitting.penalty;
+        let factor = penalty / finish::penalty_behind(penalty);
+        self.splitting.multipliers().iter().map(|u| factor * *u).collect()
+    }
+
+    /// Computes afresh what the points are worth.
+    fn judge(&mut self, found: &mut Found) {
+        let (points, u) = (self.splitting.points.clone(), self.finish_multipliers());
+        let mut finish = self.finish_of();
+        let residuals = finish.residuals(&points, &u);
+        found.capped = finish.capped(&u);
+        found.is_solution = residuals.are_within(10.0 * self.tolerance, self.size) && found.capped == 0;
+        found.residuals = Some(residuals);
+        let splitting = &mut self.splitting;
+        found.penalty = splitting.penalty;
         let distances = distances(&mut splitting.hard, &splitting.points);
         let worst = distances.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((item, distance)) = worst {

@@ -55,6 +55,11 @@ impl Quadratic {
         quadratic
     }
 
+    /// `p⁰`.
+    pub(super) fn initial(&self) -> &[DVec3] {
+        &self.initial
+    }
+
     /// Moves the target of a handle; the matrix stays.
     pub(super) fn set_target(&mut self, point: u32, target: DVec3) {
         self.targets[point as usize] = target;
