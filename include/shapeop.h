@@ -566,9 +566,13 @@ SHAPEOP_API enum shapeop_err shapeop_setThreadCount(struct ShapeOpSolver *op, in
  * Sets how the following solves are accelerated: `kind` is a `shapeop_acceleration`, `memory` the number of iterations
  * that are remembered for it, at most 64; 0: the method's default. Accelerated solves take far fewer iterations to the
  * same energy, and an accelerated step never raises it; the iterates are others than without. Every call, and so every
- * time step, begins anew: nothing is remembered from call to call. A refused call changes nothing.
+ * time step, begins anew: nothing is remembered from call to call. With a pressure or a normal force on faces all iterations
+ * are plain, whatever is set. A refused call changes nothing.
  */
-SHAPEOP_API enum shapeop_err shapeop_setAcceleration(struct ShapeOpSolver *op, int kind, unsigned int memory);
+SHAPEOP_API
+enum shapeop_err shapeop_setAcceleration(struct ShapeOpSolver *op,
+                                         int kind,
+                                         unsigned int memory);
 
 /**
  * Sets how the linear system of an iteration is solved, from the next solve on; `linear_solver` is a
