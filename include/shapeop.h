@@ -566,9 +566,13 @@ SHAPEOP_API enum shapeop_err shapeop_setThreadCount(struct ShapeOpSolver *op, in
  * Sets how the following solves are accelerated: `kind` is a `shapeop_acceleration`, `memory` the number of iterations
  * that are remembered for it, at most 64; 0: the method's default. Accelerated solves take far fewer iterations to the
  * same energy, and an accelerated step never raises it; the iterates are others than without. Every call, and so every
- * time step, begins anew: nothing is remembered from call to call. A refused call changes nothing.
+ * time step, begins anew: nothing is remembered from call to call. With a pressure or a normal force on faces all iterations
+ * are plain, whatever is set. A refused call changes nothing.
  */
-SHAPEOP_API enum shapeop_err shapeop_setAcceleration(struct ShapeOpSolver *op, int kind, unsigned int memory);
+SHAPEOP_API
+enum shapeop_err shapeop_setAcceleration(struct ShapeOpSolver *op,
+                                         int kind,
+                                         unsigned int memory);
 
 /**
  * Sets how the linear system of an iteration is solved, from the next solve on; `linear_solver` is a
@@ -605,6 +609,43 @@ SHAPEOP_API int shapeop_pointCount(struct ShapeOpSolver *op);
  * The number of points that no constraint of a weight above 0 holds, or -1. In static mode they keep their place.
  */
 SHAPEOP_API int shapeop_unconstrainedCount(struct ShapeOpSolver *op);
+
+/**
+ * Adds a polyline for "OnCurve" constraints to refer to: its id, which is returned, is their scalar. Its coordinates are copied.
+ * -1 if it has fewer than 2 points, or a coordinate is not finite. References stay until `shapeop_setProblem`.
+ *
+ * - `points`: `x0 y0 z0 x1 ...` in model units, `nb_points` points. They are no points of the solver.
+ * - `is_closed`: 1: a segment leads from the last point back to the first; 0: not.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles.
+ */
+SHAPEOP_API
+int shapeop_addReferencePolyline(struct ShapeOpSolver *op,
+                                 const double *points,
+                                 int nb_points,
+                                 int is_closed);
+
+/**
+ * Adds a triangle mesh for "OnMesh" constraints to refer to: its id, which is returned, is their scalar. Its numbers are copied.
+ * -1 if it has no triangle, an index is out of range, or a coordinate is not finite. Else as `shapeop_addReferencePolyline`.
+ *
+ * - `triangles`: `3 * nb_triangles` indices into `points`, which are no points of the solver.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles, `triangles` for `3 * nb_triangles` ints.
+ */
+SHAPEOP_API
+int shapeop_addReferenceMesh(struct ShapeOpSolver *op,
+                             const double *points,
+                             int nb_points,
+                             const int *triangles,
+                             int nb_triangles);
+
+/**
+ * The number of references, or -1.
+ */
+SHAPEOP_API int shapeop_referenceCount(struct ShapeOpSolver *op);
 
 /**
  * Adds a constraint with its type's default scalars, at rest where the points are now. `ids` are point indices.
@@ -754,6 +795,51 @@ SHAPEOP_API int shapeop_addVertexForce(struct ShapeOpSolver *op, double *force, 
  * `force` is null or readable for 3 doubles.
  */
 SHAPEOP_API void shapeop_editVertexForce(struct ShapeOpSolver *op, int force_id, double *force, int id);
+
+/**
+ * Adds a pressure on faces: `pressure` times the vector area of each face (its area times its normal) is shared among its
+ * corners. It follows the points: each iteration has it where they are then, and acceleration is off. Returns the force's id,
+ * or -1 if it is refused.
+ *
+ * - `indices`: the point indices of all faces behind each other, `nb_indices` in all. A normal points to where the corners
+ *   run counter-clockwise.
+ * - `counts`: the number of corners of each face, at least 3. `nb_counts` 1: the same for all; otherwise one per face.
+ * - `pressure`: force per area; negative: against the normals.
+ *
+ * # Safety
+ * Each array is null or readable for its number of values.
+ */
+SHAPEOP_API
+int shapeop_addPressure(struct ShapeOpSolver *op,
+                        const int *indices,
+                        int nb_indices,
+                        const int *counts,
+                        int nb_counts,
+                        double pressure);
+
+/**
+ * Adds a force of length `magnitude` on every corner of faces, once per point, along the normal there: that of the sum of the
+ * vector areas of the faces around the point. Else as `shapeop_addPressure`.
+ *
+ * # Safety
+ * Each array is null or readable for its number of values.
+ */
+SHAPEOP_API
+int shapeop_addNormalForce(struct ShapeOpSolver *op,
+                           const int *indices,
+                           int nb_indices,
+                           const int *counts,
+                           int nb_counts,
+                           double magnitude);
+
+/**
+ * Replaces the pressure, or the length of the normal force, of the force `force_id`. The next solve uses it. Refused if it is
+ * no such force, or `magnitude` is not finite.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_editForceMagnitude(struct ShapeOpSolver *op,
+                                            int force_id,
+                                            double magnitude);
 
 /**
  * Removes a force. Its id is never given out again.

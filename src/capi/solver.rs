@@ -92,7 +92,8 @@ pub enum shapeop_acceleration {
 /// Sets how the following solves are accelerated: `kind` is a `shapeop_acceleration`, `memory` the number of iterations
 /// that are remembered for it, at most 64; 0: the method's default. Accelerated solves take far fewer iterations to the
 /// same energy, and an accelerated step never raises it; the iterates are others than without. Every call, and so every
-/// time step, begins anew: nothing is remembered from call to call. A refused call changes nothing.
+/// time step, begins anew: nothing is remembered from call to call. With a pressure or a normal force on faces all iterations
+/// are plain, whatever is set. A refused call changes nothing.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_setAcceleration(op: *mut ShapeOpSolver, kind: c_int, memory: c_uint) -> super::shapeop_err {
     super::code(guard(op, |solver| solver.set_acceleration(acceleration(kind)?, memory)))

@@ -372,11 +372,16 @@ impl Solver {
     /// `damping` the factor on velocities after each step.
     ///
     /// # Errors
-    /// `mass` or `timestep` is not finite and above 0, `damping` not finite and at least 0, or as [`Solver::init`].
+    /// `mass` or `timestep` is not finite and above 0, `damping` not finite and at least 0; there is a hard constraint, a handle or an
+    /// objective, which static mode alone has; or as [`Solver::init`].
     pub fn init_dynamic(&mut self, mass: f64, damping: f64, timestep: f64) -> Result<()> {
         check_above_0("masses", mass)?;
         check_damping(damping)?;
         check_above_0("timestep", timestep)?;
+        if self.explores() {
+            let reason = "hard constraints, handles and objectives are for static mode: initialise with init";
+            return Err(Error::new(Status::InvalidValue, reason));
+        }
         self.init_with(Mode::Dynamic, mass, damping, timestep)
     }
 

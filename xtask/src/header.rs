@@ -8,8 +8,8 @@ use anyhow::{Context, Result, bail};
 use crate::{declarations, shell};
 
 /// The sources of the C ABI, in the order in which the header groups functions.
-const SOURCES: [&str; 9] =
-    ["errors", "handles", "solver", "points", "constraints", "forces", "registry", "report", "problem"];
+const SOURCES: [&str; 10] =
+    ["errors", "handles", "solver", "points", "references", "constraints", "forces", "registry", "report", "problem"];
 
 /// Writes the header and the declarations for other languages, or only compares.
 pub fn run(check: bool) -> Result<()> {

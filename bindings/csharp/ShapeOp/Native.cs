@@ -247,6 +247,24 @@ namespace ShapeOp
         internal static extern int shapeop_unconstrainedCount(SolverHandle op);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_addReferencePolyline(
+            SolverHandle op,
+            double[] points,
+            int nbPoints,
+            int isClosed);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_addReferenceMesh(
+            SolverHandle op,
+            double[] points,
+            int nbPoints,
+            int[] triangles,
+            int nbTriangles);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_referenceCount(SolverHandle op);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern int shapeop_addConstraint(
             SolverHandle op,
             byte[] constraintType,
@@ -319,6 +337,27 @@ namespace ShapeOp
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern void shapeop_editVertexForce(SolverHandle op, int forceId, double[] force, int id);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_addPressure(
+            SolverHandle op,
+            int[] indices,
+            int nbIndices,
+            int[] counts,
+            int nbCounts,
+            double pressure);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_addNormalForce(
+            SolverHandle op,
+            int[] indices,
+            int nbIndices,
+            int[] counts,
+            int nbCounts,
+            double magnitude);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_editForceMagnitude(SolverHandle op, int forceId, double magnitude);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern ErrorCode shapeop_removeForce(SolverHandle op, int forceId);

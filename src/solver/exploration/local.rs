@@ -111,7 +111,9 @@ impl Local {
         let k = indices.len();
         let (row_count, coefficients, scale) = match batch.info().rows {
             Rows::Centred => (k, None, 1.0),
-            _ => {
+            kind => {
+                let differences = if kind == Rows::Pairs { pair_rows(k) } else { Vec::new() };
+                let rows = if kind == Rows::Pairs { differences.as_slice() } else { rows };
                 let row_count = rows.len() / k;
                 let start = self.coefficients.len();
                 self.coefficients.extend_from_slice(rows);
@@ -224,6 +226,15 @@ impl Local {
         };
         for_parts(&self.row_bounds, &mut self.targets, &mut self.nothing, is_parallel, &work);
     }
+}
+
+/// The rows of [`Rows::Pairs`]: the second point of each pair less the first.
+fn pair_rows(k: usize) -> Vec<f64> {
+    let mut rows = vec![0.0; k / 2 * k];
+    for (pair, row) in rows.chunks_exact_mut(k).enumerate() {
+        (row[2 * pair], row[2 * pair + 1]) = (-1.0, 1.0);
+    }
+    rows
 }
 
 /// `Aᵀ (A Aᵀ)⁻¹` of `row_count` rows of `k` coefficients, one row per point. Rows that depend on others get as little as

@@ -102,7 +102,6 @@ struct Accelerated {
     plain: Vec<DVec3>,
     residual: f64,
     is_trial: bool,
-    is_off: bool,
 }
 
 impl Splitting {
@@ -184,10 +183,6 @@ impl Splitting {
     /// Forgets what acceleration remembers: what it is about has changed.
     pub(super) fn forget(&mut self) {
         self.accelerated.reset(self.rows.len());
-    }
-
-    pub(super) fn set_accelerated(&mut self, is_on: bool) {
-        self.accelerated.is_off = !is_on;
     }
 
     /// Another penalty; multipliers stay. Factorises again.
@@ -320,10 +315,6 @@ impl Accelerated {
     /// Replaces `rows`, whose plain step leads to `next` and leaves `residual`: by an accelerated step, or by the plain one. A trial
     /// that raised the residual is taken back to the plain step from where it began.
     fn advance(&mut self, rows: &mut [DVec3], next: &[DVec3], residual: f64, is_parallel: bool) {
-        if self.is_off {
-            rows.copy_from_slice(next);
-            return;
-        }
         // False for NaN.
         if self.is_trial && !(residual < self.residual) {
             rows.copy_from_slice(&self.plain);
@@ -387,21 +378,15 @@ impl Parts<'_> {
     /// Where the penalty's share of the diagonal is [`SHARE`] times that of the objective.
     fn suggested_penalty(&self, soft: &Local, hard: &Local) -> f64 {
         let (mut objective, _) = self.quadratic.free_trace();
-        let trace = |set: &ConstraintSet, local: &Local| {
-            let mut sum = 0.0;
-            let mut stiffness = local.stiffness.iter();
-            for (batch, _) in set.batches() {
-                for slot in 0..batch.len() {
-                    let s = stiffness.next().copied().unwrap_or_default();
-                    let rows = batch.rows(slot);
-                    let k = batch.indices(slot).len() as f64;
-                    sum += s * if rows.is_empty() { k - 1.0 } else { rows.iter().map(|a| a * a).sum() };
-                }
-            }
-            sum
+        let trace = |local: &Local| {
+            let of_item = |(item, s): (&Item, &f64)| match local.matrices(item) {
+                None => s * (item.point_count as f64 - 1.0),
+                Some((rows, _)) => s * rows.iter().map(|a| a * a).sum::<f64>(),
+            };
+            local.items.iter().zip(&local.stiffness).map(of_item).sum::<f64>()
         };
-        objective += trace(self.soft, soft);
-        let hard = trace(self.hard, hard);
+        objective += trace(soft);
+        let hard = trace(hard);
         if hard > 0.0 { SHARE * objective / hard } else { 1.0 }
     }
 }
