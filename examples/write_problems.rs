@@ -57,6 +57,7 @@ pub(crate) fn hanging_cloth(pull: f64) -> Result<Problem, shapeop::error::Error>
         indices,
         weight,
         scalars: None,
+        hard: false,
     };
     let mut constraints = Vec::new();
     for (i, &[a, b]) in topology.edges().iter().enumerate() {

@@ -161,6 +161,10 @@ typedef enum shapeop_outcome {
      * which.
      */
     SO_OUTCOME_UNBOUNDED = 5,
+    /**
+     * Hard constraints contradict each other; `shapeop_getConflicts` names a small set, and the points meet the others.
+     */
+    SO_OUTCOME_INFEASIBLE = 6,
 } shapeop_outcome;
 
 /**
@@ -672,7 +676,7 @@ int shapeop_addConstraint(struct ShapeOpSolver *op,
  * - `scalars`: scalar sets behind each other, `nb_scalars` numbers in all. `nb_scalar_sets` 0: the defaults of the
  *   type; 1: one set for all; otherwise one per constraint. For types that take shapes every set has the same number
  *   of shapes, each of its own constraint's number of points.
- * - `flags`: 0. Unknown bits are refused.
+ * - `flags`: 0, or `SHAPEOP_HARD`: they are to be met exactly, see `shapeop_setHard`. Unknown bits are refused.
  * - `constraint_ids`: null, or where the ids go, one int per constraint.
  *
  * # Safety

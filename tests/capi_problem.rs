@@ -102,8 +102,10 @@ fn measured(name: &str, mesh: &Flat, room: &mut [f64]) -> shapeop_err {
 
 #[test]
 fn a_problem_replaces_all_that_a_solver_holds() {
-    let plane = Signature { type_name: "Plane".into(), indices: vec![0, 1, 2, 3], weight: 1.0, scalars: None };
-    let near = |i| Signature { type_name: "Closeness".into(), indices: vec![i], weight: 0.25, scalars: None };
+    let plane =
+        Signature { type_name: "Plane".into(), indices: vec![0, 1, 2, 3], weight: 1.0, scalars: None, hard: false };
+    let near =
+        |i| Signature { type_name: "Closeness".into(), indices: vec![i], weight: 0.25, scalars: None, hard: false };
     let problem = Problem {
         points: WARPED.chunks(3).map(|point| [point[0], point[1], point[2]]).collect(),
         constraints: [vec![plane], (0..4).map(near).collect()].concat(),

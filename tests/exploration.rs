@@ -98,9 +98,16 @@ fn objective_of(points: &[DVec3], initial: &Mesh, handles: &[(u32, DVec3)]) -> f
 fn bounded_diagonals_lead_to_the_solution_that_an_interior_point_method_and_newton_found() {
     let text = std::fs::read_to_string("tests/exploration/fig12_21.json").unwrap();
     let known: Value = serde_json::from_str(&text).unwrap();
-    let numbers: Vec<f64> = known["points"].as_array().unwrap().iter().flat_map(|point| {
-        point.as_array().map_or_else(|| vec![point.as_f64().unwrap()], |xyz| xyz.iter().map(|x| x.as_f64().unwrap()).collect())
-    }).collect();
+    let numbers: Vec<f64> = known["points"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .flat_map(|point| {
+            point
+                .as_array()
+                .map_or_else(|| vec![point.as_f64().unwrap()], |xyz| xyz.iter().map(|x| x.as_f64().unwrap()).collect())
+        })
+        .collect();
     let expected: Vec<DVec3> = numbers.chunks(3).map(DVec3::from_slice).collect();
     let (mut solver, mesh) = figure_12(21);
     let report = solve(&mut solver);

@@ -10,14 +10,21 @@ fn sample() -> Problem {
         timestep: 0.1,
         points: vec![[0.0; 3], [1.0, 0.1 + 0.2, -1e-300], [0.0, 1.0, 0.0], [f64::MAX, 0.0, 5e-324]],
         constraints: vec![
-            Signature { type_name: "Plane".into(), indices: vec![0, 1, 2], weight: 2.5, scalars: None },
+            Signature { type_name: "Plane".into(), indices: vec![0, 1, 2], weight: 2.5, scalars: None, hard: false },
             Signature {
                 type_name: "Closeness".into(),
                 indices: vec![1],
                 weight: 1.0,
                 scalars: Some(vec![1.0, 2.0, 3.0]),
+                hard: false,
             },
-            Signature { type_name: "OnMesh".into(), indices: vec![2], weight: 1.0, scalars: Some(vec![1.0]) },
+            Signature {
+                type_name: "OnMesh".into(),
+                indices: vec![2],
+                weight: 1.0,
+                scalars: Some(vec![1.0]),
+                hard: false,
+            },
         ],
         forces: vec![
             ForceSignature {

@@ -3,8 +3,8 @@
 use std::ffi::{c_char, c_int, c_uint};
 
 use super::arguments::{check_pointer, constraint_id, length, slice, text, write};
-use super::handles::ShapeOpSolver;
 use super::explore::SHAPEOP_HARD;
+use super::handles::ShapeOpSolver;
 use super::{c_count, code, guard, guard_read, number, shapeop_err};
 use crate::constraints::{NewConstraints, Scalars, TypeIndex};
 use crate::error::{Error, Result, Status};

@@ -7,8 +7,8 @@ use std::ptr;
 use super::arguments::{check_pointer, constraint_id, length, point_index, slice, vector, write};
 use super::handles::ShapeOpSolver;
 use super::points::check_count;
-use super::structs::{self, SizedStruct};
 use super::registry::name_of_type;
+use super::structs::{self, SizedStruct};
 use super::{c_count, code, guard, guard_free, guard_read, number, shapeop_err};
 use crate::error::{Error, Result, Status};
 use crate::problem::{Fairness, FairnessRows, Objective};
@@ -252,7 +252,8 @@ fn lists(indices: &[c_int], counts: &[c_int], point_count: usize) -> Result<Vec<
     if rest.is_empty() {
         return Ok(lists);
     }
-    let reason = format!("expected {}, to which the counts add up; found {}", indices.len() - rest.len(), indices.len());
+    let reason =
+        format!("expected {}, to which the counts add up; found {}", indices.len() - rest.len(), indices.len());
     Err(Error::new(Status::InvalidArgumentLength, reason).at("nb_indices"))
 }
 

@@ -11,10 +11,12 @@ mod obj;
 mod off;
 pub mod patterns;
 mod ply;
+mod polylines;
 mod topology;
 
 pub use closest::ClosestPoints;
 pub use file::Format;
+pub use polylines::polylines;
 pub use topology::{BoundaryChain, Neighbours, Topology};
 
 use glam::DVec3;

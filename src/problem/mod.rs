@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::constraints::{ConstraintId, ConstraintSet, NewConstraints};
 use crate::error::{Error, Result, Status, finite};
+use crate::mesh::{Mesh, Topology, polylines};
 
 /// The version of the JSON form that this library writes and reads.
 pub const VERSION: u32 = 1;
@@ -56,6 +57,9 @@ pub struct Signature {
     /// Its scalars, as its type states them; absent or null: the defaults.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scalars: Option<Vec<f64>>,
+    /// True if it must be met exactly (static mode); its weight is then its priority where not everything can be.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub hard: bool,
 }
 
 /// What a force acts on.
@@ -197,21 +201,31 @@ pub struct Problem {
     /// The forces, in the order of their ids.
     #[serde(default)]
     pub forces: Vec<ForceSignature>,
+    /// What is minimised while hard constraints are met (static mode). Absent: the defaults, if there is a hard constraint or a handle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub objective: Option<Objective>,
+    /// Points that are drawn to targets (static mode).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub handles: Vec<Handle>,
     /// Edits of constraints between time steps (dynamic mode), for whoever makes the steps: see [`Problem::edits_before`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<Edit>,
     /// When to stop.
     #[serde(default)]
     pub settings: Settings,
-    /// Faces as lists of point indices, for files and pictures only.
+    /// Faces as lists of point indices: for files, pictures, and the fairness of an objective.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faces: Vec<Vec<u32>>,
-    /// Edges as pairs of point indices, for files and pictures only.
+    /// Edges as pairs of point indices: for files, pictures, and the fairness of an objective.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edges: Vec<[u32; 2]>,
     /// Anything else that its author wants to keep; never read.
     #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
     pub extra: serde_json::Map<String, serde_json::Value>,
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 fn one() -> f64 {
@@ -230,6 +244,8 @@ impl Default for Problem {
             references: Vec::new(),
             constraints: Vec::new(),
             forces: Vec::new(),
+            objective: None,
+            handles: Vec::new(),
             edits: Vec::new(),
             settings: Settings::default(),
             faces: Vec::new(),
@@ -344,6 +360,11 @@ impl Problem {
             };
             constraints.add(&points, new, |id| format!("constraints[{id}]"))?;
         }
+        let hard = self.constraints.iter().enumerate().filter(|(_, signature)| signature.hard);
+        for (id, _) in hard {
+            constraints.set_hard(id, true).map_err(|error| error.at(format!("constraints[{id}].hard")))?;
+        }
+        self.check_exploration()?;
         let mut forces = ForceSet::default();
         for (i, signature) in self.forces.iter().enumerate() {
             let force = Force::from_signature(signature);
@@ -355,6 +376,72 @@ impl Problem {
             self.check_edit(edit, &constraints).map_err(|error| error.at(format!("edits[{i}]")))?;
         }
         Ok((points, constraints, forces))
+    }
+
+    /// Refuses handles and objectives that do not fit, and anything to explore in dynamic mode.
+    fn check_exploration(&self) -> Result<()> {
+        let is_hard = |signature: &Signature| signature.hard;
+        if self.mode == Mode::Dynamic {
+            let found = [
+                (self.objective.is_some(), "objective".to_owned()),
+                (!self.handles.is_empty(), "handles".to_owned()),
+                (
+                    self.constraints.iter().any(is_hard),
+                    format!("constraints[{}].hard", self.constraints.iter().position(is_hard).unwrap_or_default()),
+                ),
+            ];
+            if let Some((_, place)) = found.into_iter().find(|(is_there, _)| *is_there) {
+                let reason = "it is for mode \"static\", found \"dynamic\"";
+                return Err(Error::new(Status::InvalidValue, reason).at(place));
+            }
+        }
+        for (i, handle) in self.handles.iter().enumerate() {
+            let check = || -> Result<()> {
+                if handle.point as usize >= self.points.len() {
+                    let reason = format!("{} is out of range for {} points", handle.point, self.points.len());
+                    return Err(Error::new(Status::IndexOutOfRange, reason).at("point"));
+                }
+                if self.handles[..i].iter().any(|other| other.point == handle.point) {
+                    let reason = format!("point {} has a handle already", handle.point);
+                    return Err(Error::new(Status::InvalidValue, reason).at("point"));
+                }
+                handle.target.iter().try_for_each(|value| finite("target", *value).map(drop))
+            };
+            check().map_err(|error| error.at(format!("handles[{i}]")))?;
+        }
+        if let Some(objective) = &self.objective {
+            objective.check().map_err(|error| error.at("objective"))?;
+            if objective.fairness_weight > 0.0 && self.fairness_rows()?.iter().next().is_none() {
+                let reason = format!(
+                    "{} needs faces, edges or polylines to be fair along: give them, or set it to 0",
+                    objective.fairness_weight
+                );
+                return Err(Error::new(Status::InvalidValue, reason).at("objective.fairness_weight"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The rows of the fairness term: of faces and edges, or of polylines.
+    pub(crate) fn fairness_rows(&self) -> Result<FairnessRows> {
+        let objective = self.objective.clone().unwrap_or_default();
+        let mesh =
+            || Mesh { points: self.points.iter().copied().map(DVec3::from_array).collect(), faces: self.faces.clone() };
+        if objective.fairness == Fairness::Laplacian {
+            let mut edges = if self.faces.is_empty() { Vec::new() } else { Topology::new(&mesh())?.edges().to_vec() };
+            edges.extend_from_slice(&self.edges);
+            return Ok(FairnessRows::laplacian(self.points.len(), &edges));
+        }
+        for (i, polyline) in objective.polylines.iter().enumerate() {
+            if let Some(j) = polyline.iter().position(|&point| point as usize >= self.points.len()) {
+                let reason = format!("{} is out of range for {} points", polyline[j], self.points.len());
+                return Err(Error::new(Status::IndexOutOfRange, reason).at(format!("objective.polylines[{i}][{j}]")));
+            }
+        }
+        if !objective.polylines.is_empty() || self.faces.is_empty() {
+            return Ok(FairnessRows::differences(&objective.polylines, objective.fairness));
+        }
+        Ok(FairnessRows::differences(&polylines(&mesh())?, objective.fairness))
     }
 
     fn check_edit(&self, edit: &Edit, constraints: &ConstraintSet) -> Result<()> {

@@ -74,7 +74,8 @@ impl Objective {
             return refuse("fairness_weight", format!("expected at least 0, found {}", self.fairness_weight));
         }
         if finite("tolerance", self.tolerance)? < LEAST_TOLERANCE {
-            let reason = format!("expected at least {LEAST_TOLERANCE:e}, which is round-off; found {:e}", self.tolerance);
+            let reason =
+                format!("expected at least {LEAST_TOLERANCE:e}, which is round-off; found {:e}", self.tolerance);
             return refuse("tolerance", reason);
         }
         Ok(())

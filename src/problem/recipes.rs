@@ -239,7 +239,13 @@ impl<'a> Draft<'a> {
 
     fn add(&mut self, type_name: &str, indices: Vec<u32>, weight: f64, scalars: Option<Vec<f64>>) {
         if weight > 0.0 {
-            self.problem.constraints.push(Signature { type_name: type_name.to_owned(), indices, weight, scalars });
+            self.problem.constraints.push(Signature {
+                type_name: type_name.to_owned(),
+                indices,
+                weight,
+                scalars,
+                hard: false,
+            });
         }
     }
 

@@ -190,6 +190,13 @@ impl Solver {
         let (points, constraints, forces) = problem.assemble()?;
         let mut solver = Self { points, constraints, forces, ..Self::default() };
         solver.set_acceleration(problem.settings.acceleration, problem.settings.acceleration_memory)?;
+        if solver.constraints.hard_count() > 0 || problem.objective.is_some() || !problem.handles.is_empty() {
+            let rows = problem.fairness_rows()?;
+            solver.set_objective(&problem.objective.clone().unwrap_or_default(), rows)?;
+        }
+        for handle in &problem.handles {
+            solver.set_handle(handle.point, DVec3::from_array(handle.target))?;
+        }
         Ok(solver)
     }
 

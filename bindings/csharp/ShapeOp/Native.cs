@@ -94,6 +94,8 @@ namespace ShapeOp
         /// which.
         /// </summary>
         Unbounded = 5,
+        /// <summary>Hard constraints contradict each other; shapeop_getConflicts names a small set, and the points meet the others.</summary>
+        Infeasible = 6,
     }
 
     internal static class Native

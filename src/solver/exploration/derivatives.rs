@@ -88,7 +88,13 @@ impl Derivatives {
 
     /// Calls `visit(a, b, value)` for the lower triangle of `Aᵀ (A − J)`, made symmetric; `a` and `b` count the coordinates of the
     /// constraint's points.
-    pub(super) fn each_entry(&self, local: &Local, i: usize, block: &mut Vec<f64>, mut visit: impl FnMut(usize, usize, f64)) {
+    pub(super) fn each_entry(
+        &self,
+        local: &Local,
+        i: usize,
+        block: &mut Vec<f64>,
+        mut visit: impl FnMut(usize, usize, f64),
+    ) {
         let item = &local.items[i];
         let (k, rows) = (item.point_count, item.row_count);
         let columns = 3 * k;

@@ -227,7 +227,8 @@ impl Finish<'_> {
             for r in own.clone() {
                 excess[r] = part * rest(r);
             }
-            value += self.penalty * if distance > reach { reach * (distance - 0.5 * reach) } else { 0.5 * distance * distance };
+            value += self.penalty
+                * if distance > reach { reach * (distance - 0.5 * reach) } else { 0.5 * distance * distance };
             let gap: f64 = own.map(|r| (excess[r] - u[r]).length_squared()).sum();
             primal = primal.max(item.scale * gap.sqrt());
         }
@@ -262,7 +263,10 @@ impl Finish<'_> {
             let squares: f64 = rows.iter().zip(&*targets).map(|(row, target)| row.distance_squared(*target)).sum();
             let distance = item.scale * squares.sqrt();
             if distance > reach {
-                targets.iter_mut().zip(rows).for_each(|(target, row)| *target = *row + reach / distance * (*target - *row));
+                targets
+                    .iter_mut()
+                    .zip(rows)
+                    .for_each(|(target, row)| *target = *row + reach / distance * (*target - *row));
             }
         };
         let hard = Derivatives::new(self.hard, self.size, elastic, self.is_parallel);
@@ -414,8 +418,12 @@ impl Finish<'_> {
             let old = &steps.multipliers[of_item.clone()];
             at(old, true, &mut rows);
             let found: Vec<DVec3> = rows.iter().zip(&excess[of_item.clone()]).map(|(row, e)| *e + *row).collect();
-            let gap: f64 =
-                found.iter().zip(&u[of_item.clone()]).zip(old).map(|((e, u), step)| (*e - *u - *step).length_squared()).sum();
+            let gap: f64 = found
+                .iter()
+                .zip(&u[of_item.clone()])
+                .zip(old)
+                .map(|((e, u), step)| (*e - *u - *step).length_squared())
+                .sum();
             largest = largest.max(item.scale * gap.sqrt());
             for (r, e) in of_item.zip(found) {
                 steps.multipliers[r] = e - u[r];

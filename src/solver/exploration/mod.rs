@@ -248,7 +248,8 @@ impl Solver {
             }
             explorer.engine = None;
             explorer.memory = Memory::default();
-            let reason = "coordinates, forces or weights are so large that the result is not finite; nothing was changed";
+            let reason =
+                "coordinates, forces or weights are so large that the result is not finite; nothing was changed";
             Err(Error::new(Status::InvalidValue, reason))
         });
         if result.is_err() {
@@ -291,10 +292,7 @@ impl Explorer {
             engine.splitting.hard.take_scalars(&solver.constraints.part(true));
             engine.splitting.forget();
         }
-        let mut forces = vec![DVec3::ZERO; solver.points.len()];
-        solver.forces.sum_into(&mut forces);
-        engine.splitting.quadratic.set_forces(&forces);
-        engine.splitting.quadratic_changed();
+        engine.take_forces(solver, &solver.points);
         if self.has_new_targets {
             engine.splitting.forget();
         }
@@ -317,7 +315,8 @@ impl Explorer {
         let mut splitting =
             Splitting::new(quadratic, &solver.constraints, &solver.points, size, self.memory.penalty, false)?;
         let extents = splitting.hard.items.iter().map(|item| extent(&splitting.hard, item, &self.initial));
-        let (sum, count) = extents.filter(|extent| *extent > 0.0).fold((0.0, 0), |(sum, count), e| (sum + e, count + 1));
+        let (sum, count) =
+            extents.filter(|extent| *extent > 0.0).fold((0.0, 0), |(sum, count), e| (sum + e, count + 1));
         let extent = if count > 0 { sum / f64::from(count) } else { size };
         let force = stiffness * size;
         splitting.caps = conflicts::caps(&splitting, &solver.constraints, stiffness * extent);
@@ -387,7 +386,11 @@ impl Engine {
         let may_finish = wants_finish && !(has_budget && explorer.has_new_targets);
         let (mut settled, mut next_finish, mut least, mut idle) = (0, SETTLED, f64::INFINITY, 0);
         let mut capped_for = 0;
+        let follows = solver.forces.has_forces_on_faces();
         while found.sweeps < options.max_iterations {
+            if follows {
+                self.take_forces(solver, &solver.points);
+            }
             let sweep = self.splitting.sweep(false);
             found.sweeps += 1;
             solver.points.copy_from_slice(&self.splitting.points);
@@ -413,14 +416,20 @@ impl Engine {
                 idle += 1;
             }
             let is_near = sweep.primal <= NEAR * self.extent || idle > 3 * BALANCE;
-            if may_finish && is_near && found.sweeps >= next_finish && (settled >= SETTLED || found.sweeps >= 4 * SETTLED) {
-                let is_done = self.finish(&mut found, options, started)?;
+            if may_finish
+                && is_near
+                && found.sweeps >= next_finish
+                && (settled >= SETTLED || found.sweeps >= 4 * SETTLED)
+            {
+                let is_solution = self.finish(&mut found, options, started)?;
                 solver.points.copy_from_slice(&self.splitting.points);
-                if is_done {
+                // Forces on faces were held while the points moved.
+                let has_followed = !follows || self.take_forces(solver, &solver.points) <= self.tolerance * self.force;
+                if is_solution && has_followed {
                     report.outcome = Outcome::Converged;
                     break;
                 }
-                next_finish = found.sweeps + found.sweeps.max(2 * SETTLED);
+                next_finish = if is_solution { 0 } else { found.sweeps + found.sweeps.max(2 * SETTLED) };
             }
             if is_over(&started) {
                 report.outcome = Outcome::TimeBudget;
@@ -445,12 +454,22 @@ impl Engine {
             self.balance(&mut idle, found.sweeps, solver)?;
         }
         self.judge(&mut found);
-        found.factorisations = self.splitting.factorisation_count - factorisations_before + found.factorisations;
+        found.factorisations += self.splitting.factorisation_count - factorisations_before;
         report.iterations = found.sweeps;
         report.evaluations = found.sweeps + found.newton_steps;
         report.energy_after = self.objective_value();
         report.factorisation_count = found.factorisations;
         Ok((report, found))
+    }
+
+    /// Takes the forces as they are at `points`; returns the largest change of one.
+    fn take_forces(&mut self, solver: &Solver, points: &[DVec3]) -> f64 {
+        let mut forces = vec![DVec3::ZERO; points.len()];
+        solver.forces.sum_into(&mut forces);
+        solver.forces.add_forces_on_faces(points, &mut Vec::new(), &mut forces);
+        let changed = self.splitting.quadratic.set_forces(&forces);
+        self.splitting.quadratic_changed();
+        changed
     }
 
     /// True if sweeps alone came to rest.
@@ -473,14 +492,14 @@ impl Engine {
     fn finish(&mut self, found: &mut Found, options: &SolveOptions, started: Instant) -> Result<bool> {
         let splitting = &self.splitting;
         let penalty = finish::penalty_behind(splitting.penalty);
-        let blocks = |local: &Local| local.items.iter().map(|item| 9 * item.point_count * item.point_count).sum::<usize>();
+        let blocks =
+            |local: &Local| local.items.iter().map(|item| 9 * item.point_count * item.point_count).sum::<usize>();
         if blocks(&splitting.soft) + blocks(&splitting.hard) > finish::MOST_ENTRIES {
             return Ok(false);
         }
         let (points, u) = (splitting.points.clone(), self.finish_multipliers());
-        let mut goes_on = || {
-            options.time_budget_seconds == 0.0 || started.elapsed().as_secs_f64() < options.time_budget_seconds
-        };
+        let mut goes_on =
+            || options.time_budget_seconds == 0.0 || started.elapsed().as_secs_f64() < options.time_budget_seconds;
         let (tolerance, mut kept) = (self.tolerance, std::mem::take(&mut self.kept));
         let mut finish = self.finish_of();
         let before = finish.residuals(&points, &u);

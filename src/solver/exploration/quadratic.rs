@@ -65,8 +65,11 @@ impl Quadratic {
         self.targets[point as usize] = target;
     }
 
-    pub(super) fn set_forces(&mut self, forces: &[DVec3]) {
+    /// Sets the forces; returns the largest change of one.
+    pub(super) fn set_forces(&mut self, forces: &[DVec3]) -> f64 {
+        let change = self.forces.iter().zip(forces).map(|(old, new)| old.distance(*new)).fold(0.0, f64::max);
         self.forces.copy_from_slice(forces);
+        change
     }
 
     /// Calls `visit(i, j, value)` for every contribution to the lower triangle of the matrix.

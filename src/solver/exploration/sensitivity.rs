@@ -74,7 +74,8 @@ impl Solver {
             let reason = "sensitivities are those of a solution: solve until it is converged, first";
             Error::new(Status::NotInitialised, reason)
         })?;
-        let result = engine.sensitivities(self.weight_classes(), |id| self.constraints.get(id).map_or("", |view| view.info.name));
+        let result = engine
+            .sensitivities(self.weight_classes(), |id| self.constraints.get(id).map_or("", |view| view.info.name));
         self.explorer.engine = Some(engine);
         result
     }

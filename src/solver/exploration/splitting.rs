@@ -199,8 +199,7 @@ impl Splitting {
 
     fn refactorise(&mut self, set: &ConstraintSet, is_parallel: bool) -> Result<()> {
         let (soft, hard) = (set.part(false), set.part(true));
-        let parts =
-            Parts { quadratic: &self.quadratic, soft: &soft, hard: &hard, point_count: self.points.len() };
+        let parts = Parts { quadratic: &self.quadratic, soft: &soft, hard: &hard, point_count: self.points.len() };
         parts.fill(&mut self.matrix, &self.soft, &self.hard, self.penalty);
         self.factor.factorise(&self.matrix, is_parallel)?;
         self.factorisation_count += 1;
@@ -224,8 +223,7 @@ impl Splitting {
             self.soft.project(is_parallel);
         }
         self.right_hand_side.copy_from_slice(&self.constant);
-        for (targets, local, factor) in
-            [(&self.soft.targets, &self.soft, 1.0), (&self.rows, &self.hard, self.penalty)]
+        for (targets, local, factor) in [(&self.soft.targets, &self.soft, 1.0), (&self.rows, &self.hard, self.penalty)]
         {
             local.gather.sum(0, targets, &mut self.sums);
             let sums = self.right_hand_side[..n].iter_mut().zip(&self.sums);
@@ -353,9 +351,7 @@ impl Parts<'_> {
         self.quadratic.each_entry(visit);
         let first_mean = self.point_count;
         let later_mean = first_mean + long_constraint_count(self.soft);
-        for (set, local, factor, mean) in
-            [(self.soft, soft, 1.0, first_mean), (self.hard, hard, penalty, later_mean)]
-        {
+        for (set, local, factor, mean) in [(self.soft, soft, 1.0, first_mean), (self.hard, hard, penalty, later_mean)] {
             let mut stiffness = Vec::new();
             let mut rest = local.stiffness.as_slice();
             for (batch, _) in set.batches() {
