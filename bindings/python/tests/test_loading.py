@@ -64,7 +64,8 @@ def test_the_version_is_the_crate_s(repository: Path) -> None:
 
 
 def test_everything_that_needs_no_numpy_works_without(repository: Path) -> None:
-    tests = [f"test_{name}.py" for name in ("solver", "mistakes", "threads", "problem", "recipes", "registry")]
+    names = ("solver", "mistakes", "threads", "problem", "recipes", "registry", "exploration")
+    tests = [f"test_{name}.py" for name in names]
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests]
     environment = {**os.environ, "SHAPEOP_TEST_WITHOUT_NUMPY": "1"}
     folder = Path(__file__).parent

@@ -5,13 +5,26 @@ from __future__ import annotations
 import dataclasses
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import shapeop
 from near import assert_near
 from samples import SQUARE, saddle
-from shapeop import Constraint, Edit, Force, Outcome, Problem, Settings, _library
+from shapeop import (
+    Constraint,
+    Edit,
+    Force,
+    Handle,
+    Objective,
+    Outcome,
+    Problem,
+    ReferenceMesh,
+    ReferencePolyline,
+    Settings,
+    _library,
+)
 
 
 def canonical(text: str) -> str:
@@ -41,6 +54,35 @@ def sample() -> Problem:
     )
 
 
+def explored() -> Problem:
+    """A saddle to be planar exactly, its first corner dragged to the height 1; the others stay about where they are."""
+    return Problem(
+        points=saddle(0.1),
+        constraints=[
+            Constraint("Plane", [0, 1, 2, 3], 2.0, hard=True),
+            Constraint("OnCurve", [3], scalars=[1]),
+        ],
+        forces=[Force("normal", magnitude=0.0, faces=[[0, 1, 2]])],
+        faces=[[0, 1, 2, 3]],
+        references=[ReferenceMesh(SQUARE, [[0, 1, 2]]), ReferencePolyline(SQUARE, closed=True)],
+        objective=Objective(handle_weight=50, fairness="second-differences", polylines=[[0, 1, 2, 3]], tolerance=1e-10),
+        handles=[Handle(0, [0, 0, 1])],
+    )
+
+
+def test_what_is_explored_survives_as_text() -> None:
+    text = explored().to_json()
+    assert text == canonical(text)
+    assert Problem.from_json(text) == explored()
+    # The defaults of the objective are the library's.
+    problem = Problem(SQUARE, faces=[[0, 1, 2, 3]], objective=Objective())
+    least = json.dumps({"version": 1, "points": SQUARE, "faces": [[0, 1, 2, 3]], "objective": {}})
+    assert problem.to_json() == canonical(least)
+    problem.objective = Objective(handle_weight=0)
+    with pytest.raises(shapeop.InvalidValueError, match=r"objective\.handle_weight: expected a number above 0"):
+        problem.to_json()
+
+
 def test_the_text_is_the_library_s_own() -> None:
     text = sample().to_json()
     assert text == canonical(text)
@@ -64,9 +106,20 @@ def test_the_examples_round_trip(repository: Path, tmp_path: Path, name: str) ->
 
 def test_no_field_of_the_schema_is_missing(repository: Path) -> None:
     schema = json.loads((repository / "docs" / "problem.schema.json").read_text(encoding="utf-8"))
-    kinds = {"Signature": Constraint, "ForceSignature": Force, "Edit": Edit, "Settings": Settings}
+    kinds = {
+        "Signature": Constraint,
+        "ForceSignature": Force,
+        "Edit": Edit,
+        "Settings": Settings,
+        "Handle": Handle,
+        "Objective": Objective,
+    }
     for name, kind in kinds.items():
         assert {field.name for field in dataclasses.fields(kind)} == set(schema["$defs"][name]["properties"]), name
+    references: dict[str, Any] = {"polyline": ReferencePolyline, "mesh": ReferenceMesh}
+    for one in schema["$defs"]["Reference"]["oneOf"]:
+        for name, form in one["properties"].items():
+            assert {field.name for field in dataclasses.fields(references[name])} == set(form["properties"]), name
     assert {field.name for field in dataclasses.fields(Problem)} == set(schema["properties"])
 
 

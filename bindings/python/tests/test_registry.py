@@ -30,6 +30,9 @@ def test_every_type_can_be_added_by_what_the_registry_says_of_it() -> None:
     corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]
     for one in shapeop.constraint_types().values():
         with shapeop.Solver(corners) as solver:
+            # Types that refer to a shape take the first of its kind unless they are told.
+            solver.add_reference_polyline(corners)
+            solver.add_reference_mesh(corners, [[0, 1, 2]])
             assert solver.add(one.name, list(range(one.least_indices))) == 0
             with pytest.raises(shapeop.InvalidValueError) as caught:
                 solver.add(one.name, [list(range(one.least_indices - 1))])
@@ -43,6 +46,7 @@ def test_every_type_can_be_added_by_what_the_registry_says_of_it() -> None:
         (shapeop.Acceleration, "SO_ACCELERATION_"),
         (shapeop.LinearSolver, "SO_LINEAR_SOLVER_"),
         (shapeop.Projection, "SO_PROJECTION_"),
+        (shapeop.Fairness, "SO_FAIRNESS_"),
     ],
 )
 def test_no_member_of_an_enum_is_missing(kind: type[IntEnum], prefix: str) -> None:
@@ -51,7 +55,7 @@ def test_no_member_of_an_enum_is_missing(kind: type[IntEnum], prefix: str) -> No
 
 
 def test_no_error_code_is_missing() -> None:
-    enums = ("SO_OUTCOME_", "SO_ACCELERATION_", "SO_LINEAR_SOLVER_", "SO_PROJECTION_", "SO_SUCCESS")
+    enums = ("SO_OUTCOME_", "SO_ACCELERATION_", "SO_LINEAR_SOLVER_", "SO_PROJECTION_", "SO_FAIRNESS_", "SO_SUCCESS")
     names = [name for name in vars(_abi) if name.startswith("SO_") and not name.startswith(enums)]
     assert {code.name for code in shapeop.ErrorCode} == {name[len("SO_") :] for name in names}
     for code in shapeop.ErrorCode:
@@ -62,6 +66,8 @@ def test_no_error_code_is_missing() -> None:
 def test_the_report_and_the_progress_have_every_field_of_their_structs() -> None:
     fields = [field.name for field in dataclasses.fields(shapeop.Report)]
     assert fields == [*[name for name, *_ in _abi.shapeop_solve_report._fields_[1:]], "message"]
+    fields = [field.name for field in dataclasses.fields(shapeop.Exploration)]
+    assert fields == [name for name, *_ in _abi.shapeop_exploration._fields_[1:]]
     assert list(shapeop.Progress._fields) == [name for name, *_ in _abi.shapeop_progress._fields_[1:]]
 
 

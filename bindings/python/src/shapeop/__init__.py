@@ -23,7 +23,18 @@ from ._library import (
     UnknownIdError,
     version,
 )
-from .problem import Constraint, Edit, Force, Problem, Settings
+from .exploration import Exploration, Fairness, Sensitivities
+from .problem import (
+    Constraint,
+    Edit,
+    Force,
+    Handle,
+    Objective,
+    Problem,
+    ReferenceMesh,
+    ReferencePolyline,
+    Settings,
+)
 from .recipes import FairnessKind, Recipe, Result, measure_faces, measure_names, recipe, recipe_names
 from .registry import ConstraintType, Projection, Scalar, constraint_types
 from .report import Acceleration, LinearSolver, Outcome, Progress, Report
@@ -43,21 +54,28 @@ __all__ = [
     "Edit",
     "Error",
     "ErrorCode",
+    "Exploration",
+    "Fairness",
     "FairnessKind",
     "Force",
+    "Handle",
     "IndexRangeError",
     "InvalidValueError",
     "LinearSolver",
     "LoadError",
     "NotInitialisedError",
+    "Objective",
     "Outcome",
     "Problem",
     "Progress",
     "Projection",
     "Recipe",
+    "ReferenceMesh",
+    "ReferencePolyline",
     "Report",
     "Result",
     "Scalar",
+    "Sensitivities",
     "Settings",
     "Solver",
     "UnboundedError",

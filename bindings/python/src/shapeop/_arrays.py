@@ -89,6 +89,13 @@ def real(value: object, name: str) -> float:
     raise ArgumentTypeError(f"{name}: expected a number, found {found(value)}")
 
 
+def truth(value: object, name: str) -> bool:
+    """A truth; 1 and 0 are none, so that a weight in its place is noticed."""
+    if isinstance(value, bool) or (numpy is not None and isinstance(value, numpy.bool_)):
+        return bool(value)
+    raise ArgumentTypeError(f"{name}: expected True or False, found {found(value)}")
+
+
 def name_bytes(value: object, name: str) -> bytes:
     """A name, as the library takes it."""
     if not isinstance(value, str):
@@ -245,12 +252,35 @@ def index_lists(values: Any, name: str) -> IndexLists:
     return IndexLists(indices, _int_block([indices.length], name), 1, True)
 
 
+def face_lists(values: Any, name: str, corner_count: Optional[int] = None) -> IndexLists:
+    """Many index lists; each of ``corner_count`` indices if that is given."""
+    lists = index_lists(values, name)
+    if lists.is_one:
+        raise ArgumentError(f"{name}: expected a list of lists of point indices, found {found(values)}")
+    counts = lists.counts.pointer[: lists.counts.length]
+    wrong = [count for count in counts if corner_count is not None and count != corner_count]
+    if wrong:
+        place = name if is_array(values) else f"{name}[{counts.index(wrong[0])}]"
+        raise ArgumentError(f"{place}: expected {corner_count} point indices, found {wrong[0]}")
+    return lists
+
+
 def doubles(values: Any) -> Doubles:
     """Numbers that the library filled into a ctypes array, as they are handed out."""
     if numpy is None:
         return list(values)
     # Without its type in words: the description that ctypes gives of empty arrays is wrong in Python 3.9.
     return numpy.frombuffer(values).copy() if len(values) > 0 else numpy.empty(0)
+
+
+def shaped(values: Any, *shape: int) -> Any:
+    """Numbers that the library filled into a ctypes array, as an array of a shape, or nested lists."""
+    if numpy is not None:
+        return doubles(values).reshape(shape)
+    nested: Any = list(values)
+    for length in reversed(shape[1:]):
+        nested = [nested[i : i + length] for i in range(0, len(nested), length)]
+    return nested
 
 
 def member(kind: Any, value: Any, name: str) -> int:

@@ -31,6 +31,8 @@ class Constraint:
     """How much it counts against the others; at least 0."""
     scalars: Optional[Sequence[float]] = None
     """Its scalars, as its type states them; ``None`` for the defaults."""
+    hard: bool = False
+    """Whether it must be met exactly (static mode); its weight is then its priority where not everything can be."""
 
 
 @dataclass
@@ -38,11 +40,15 @@ class Force:
     """One force; its id in the solver is its place in ``Problem.forces``."""
 
     kind: str
-    """``"gravity"``, on every point, or ``"vertex"``, on the point ``id``."""
-    force: Sequence[float]
-    """x, y, z; in dynamic mode an acceleration."""
+    """"gravity", on every point; "vertex", on the point ``id``; "pressure" or "normal", on ``faces``."""
+    force: Optional[Sequence[float]] = None
+    """x, y, z of gravity or a vertex force; in dynamic mode an acceleration."""
     id: Optional[int] = None
     """The point that a vertex force acts on."""
+    magnitude: Optional[float] = None
+    """A pressure, or the length of a normal force on every corner; below 0 against the normals."""
+    faces: Sequence[Sequence[int]] = field(default_factory=list)
+    """The faces that a pressure or a normal force acts on; a normal points to where they run counter-clockwise."""
 
 
 @dataclass
@@ -55,6 +61,54 @@ class Edit:
     """The constraint, by its place in ``Problem.constraints``."""
     scalars: Sequence[float]
     """Its scalars, as its type states them."""
+
+
+@dataclass
+class ReferencePolyline:
+    """A polyline that ``OnCurve`` constraints refer to; its id is its place in ``Problem.references``."""
+
+    points: PointsLike
+    """At least 2, each ``[x, y, z]`` in model units."""
+    closed: bool = False
+    """Whether a segment leads from the last point back to the first."""
+
+
+@dataclass
+class ReferenceMesh:
+    """Triangles that ``OnMesh`` constraints refer to; its id is its place in ``Problem.references``."""
+
+    points: PointsLike
+    """Each ``[x, y, z]`` in model units."""
+    triangles: Sequence[Sequence[int]]
+    """At least one, each three indices into ``points``."""
+
+
+@dataclass
+class Handle:
+    """A point that is drawn to a target (static mode)."""
+
+    point: int
+    """The point."""
+    target: Sequence[float]
+    """x, y, z in model units."""
+
+
+@dataclass
+class Objective:
+    """What is minimised while hard constraints are met (static mode)."""
+
+    handle_weight: float = 100.0
+    """Of the distances of handles from their targets, above 0."""
+    closeness_weight: float = 0.1
+    """Of the distances of the other points from where they were, above 0."""
+    fairness_weight: float = 1.0
+    """Of the fairness of displacements, at least 0; it needs faces, edges or polylines."""
+    fairness: str = "laplacian"
+    """What measures it: ``"laplacian"``, ``"second-differences"`` or ``"third-differences"``."""
+    polylines: Sequence[Sequence[int]] = field(default_factory=list)
+    """The polylines of differences; empty: they are found on the faces."""
+    tolerance: float = 1e-12
+    """How far a hard constraint may be from its set, relative to the bounding-box diagonal; at least 1e-14."""
 
 
 @dataclass
@@ -91,10 +145,16 @@ class Problem:
     """The forces, in the order of their ids."""
     edits: list[Edit] = field(default_factory=list)
     """Edits of constraints between time steps (dynamic mode), for whoever makes the steps."""
+    references: list[Union[ReferencePolyline, ReferenceMesh]] = field(default_factory=list)
+    """Shapes that constraints refer to, in the order of their ids."""
+    objective: Optional[Objective] = None
+    """What is minimised while hard constraints are met; ``None``: the defaults, if there is anything to explore."""
+    handles: list[Handle] = field(default_factory=list)
+    """Points that are drawn to targets (static mode)."""
     faces: Sequence[Sequence[int]] = field(default_factory=list)
-    """Faces as lists of point indices, for files and pictures only."""
+    """Faces as lists of point indices: for files, pictures, and the fairness of an objective."""
     edges: Sequence[Sequence[int]] = field(default_factory=list)
-    """Edges as pairs of point indices, for files and pictures only."""
+    """Edges as pairs of point indices: for files, pictures, and the fairness of an objective."""
     mode: str = "static"
     """``"static"`` or ``"dynamic"``."""
     masses: float = 1.0
@@ -114,8 +174,13 @@ class Problem:
     def from_json(cls, text: str) -> Problem:
         """Reads a problem. Raises :class:`Error` with the place in the text that errs."""
         values = json.loads(_checked(text))
-        for name, kind in (("constraints", Constraint), ("forces", Force), ("edits", Edit)):
+        for name, kind in _PARTS.items():
             values[name] = [kind(**value) for value in values.get(name, ())]
+        values["references"] = [
+            _REFERENCES[name](**value) for each in values.get("references", ()) for name, value in each.items()
+        ]
+        if values.get("objective") is not None:
+            values["objective"] = Objective(**values["objective"])
         values["settings"] = Settings(**values["settings"])
         return cls(**values)
 
@@ -145,9 +210,13 @@ class Problem:
 
     def _text(self) -> str:
         """The JSON form, unchecked; what is empty is left out."""
-        parts = ("constraints", "forces", "edits", "faces", "edges", "extra")
+        parts = (*_PARTS, "references", "faces", "edges", "extra")
         values = {name: value for name, value in vars(self).items() if name not in parts or len(value) > 0}
         return json.dumps(values, default=_plain)
+
+
+_PARTS: dict[str, Any] = {"constraints": Constraint, "forces": Force, "edits": Edit, "handles": Handle}
+_REFERENCES: dict[str, Any] = {"polyline": ReferencePolyline, "mesh": ReferenceMesh}
 
 
 def solver_of(text: str, types: Sequence[str] = ()) -> Solver:
@@ -160,7 +229,9 @@ def solver_of(text: str, types: Sequence[str] = ()) -> Solver:
 def _plain(value: Any) -> Any:
     """What the json module cannot write by itself."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return {name: part for name, part in vars(value).items() if part is not None}
+        parts = {name: part for name, part in vars(value).items() if part is not None}
+        name = next((name for name, kind in _REFERENCES.items() if isinstance(value, kind)), None)
+        return {name: parts} if name else parts
     if hasattr(value, "tolist"):  # an array, or a number out of one
         return value.tolist()
     if hasattr(value, "__len__") and hasattr(value, "__getitem__"):

@@ -24,6 +24,8 @@ class Outcome(IntEnum):
     """Neither the energy nor the largest move fell any more."""
     UNBOUNDED = _abi.SO_OUTCOME_UNBOUNDED
     """A force acts along a motion that no constraint resists; the points did not move."""
+    INFEASIBLE = _abi.SO_OUTCOME_INFEASIBLE
+    """Hard constraints contradict each other: :meth:`Solver.conflicts` names a small set; the others are met."""
 
 
 class Acceleration(IntEnum):

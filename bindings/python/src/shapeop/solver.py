@@ -22,6 +22,7 @@ from ._library import (
     text,
 )
 from ._progress import ProgressFunction, Watch
+from .exploration import HARD, Exploring
 from .report import Acceleration, LinearSolver, Report, report_of
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from ._arrays import Doubles, Ids, Numbers, PointsLike, ScalarsLike
 
 
-class Solver:
+class Solver(Exploring):
     """Points, constraints and forces, and the solver that finds the shape that meets them.
 
     ``points``: an (n, 3) array or a list of ``[x, y, z]``, in model units; they may also be set later.
@@ -169,7 +170,13 @@ class Solver:
 
     @overload
     def add(
-        self, type_name: str, indices: Sequence[int], *, weight: Numbers = 1.0, scalars: Optional[ScalarsLike] = None
+        self,
+        type_name: str,
+        indices: Sequence[int],
+        *,
+        weight: Numbers = 1.0,
+        scalars: Optional[ScalarsLike] = None,
+        hard: bool = False,
     ) -> int: ...
 
     @overload
@@ -180,15 +187,28 @@ class Solver:
         *,
         weight: Numbers = 1.0,
         scalars: Optional[ScalarsLike] = None,
+        hard: bool = False,
     ) -> range: ...
 
     @overload
     def add(
-        self, type_name: str, indices: NDArray[Any], *, weight: Numbers = 1.0, scalars: Optional[ScalarsLike] = None
+        self,
+        type_name: str,
+        indices: NDArray[Any],
+        *,
+        weight: Numbers = 1.0,
+        scalars: Optional[ScalarsLike] = None,
+        hard: bool = False,
     ) -> Any: ...
 
     def add(
-        self, type_name: str, indices: Any, *, weight: Numbers = 1.0, scalars: Optional[ScalarsLike] = None
+        self,
+        type_name: str,
+        indices: Any,
+        *,
+        weight: Numbers = 1.0,
+        scalars: Optional[ScalarsLike] = None,
+        hard: bool = False,
     ) -> Union[int, range]:
         """Adds one constraint, or many of one type at once (all or none), at rest where the points are now.
 
@@ -198,6 +218,7 @@ class Solver:
         ``weight``: a number for all, or one per constraint; at least 0.
         ``scalars``: ``None`` for the defaults of the type; a flat list for all; or one such list per constraint. A
         shape may be nested, as a list of ``[x, y, z]``.
+        ``hard``: whether they are to be met exactly (static mode); see :meth:`set_hard`.
 
         Ids count up from 0 and are never reused. Raises :class:`InvalidValueError` or :class:`IndexRangeError` for what
         the library refuses, :class:`ArgumentError` or :class:`ArgumentTypeError` for wrong shapes and types.
@@ -206,6 +227,7 @@ class Solver:
         lists = _arrays.index_lists(indices, "indices")
         weights = _arrays.numbers(weight, "weight")
         sets, set_count = _arrays.scalar_sets(scalars, "scalars", None if lists.is_one else lists.list_count)
+        flags = HARD if _arrays.truth(hard, "hard") else 0
         if lists.list_count == 0:
             return range(0)
         if weights.length not in (1, lists.list_count):
@@ -214,7 +236,7 @@ class Solver:
         ids = (ctypes.c_int * lists.list_count)()
         # One count stands for all.
         code = lib.shapeop_addConstraints(
-            *(self._handle, name, *lists.indices, *lists.counts, *weights, *sets, set_count, 0, ids)
+            *(self._handle, name, *lists.indices, *lists.counts, *weights, *sets, set_count, flags, ids)
         )
         check(code, self._handle)
         first = ids[0]
@@ -298,6 +320,34 @@ class Solver:
         check(lib.shapeop_getViolations(self._handle, flat, count), self._handle)
         return _arrays.doubles(flat)
 
+    # References.
+
+    def add_reference_polyline(self, points: PointsLike, closed: bool = False) -> int:
+        """Adds a polyline for ``OnCurve`` constraints to refer to: its id, which is returned, is their scalar.
+
+        ``points``: as for the solver, at least 2; they are no points of the solver, and are copied.
+        ``closed``: whether a segment leads from the last point back to the first.
+        """
+        block = _arrays.points(points)
+        is_closed = int(_arrays.truth(closed, "closed"))
+        return self._count(lib.shapeop_addReferencePolyline(self._handle, *block, is_closed))
+
+    def add_reference_mesh(self, points: PointsLike, triangles: Any) -> int:
+        """Adds a triangle mesh for ``OnMesh`` constraints to refer to: its id, which is returned, is their scalar.
+
+        ``points``: as for the solver; they are no points of the solver, and are copied.
+        ``triangles``: an (m, 3) integer array or a list of three indices into ``points`` each.
+        """
+        block = _arrays.points(points)
+        lists = _arrays.face_lists(triangles, "triangles", 3)
+        answer = lib.shapeop_addReferenceMesh(self._handle, *block, lists.indices.pointer, lists.list_count)
+        return self._count(answer)
+
+    @property
+    def reference_count(self) -> int:
+        """The number of references; a problem replaces them."""
+        return self._count(lib.shapeop_referenceCount(self._handle))
+
     # Forces.
 
     def add_gravity(self, force: Sequence[float]) -> int:
@@ -315,6 +365,31 @@ class Solver:
         number, place = _arrays.integer(id, "id"), _arrays.integer(point, "point")
         lib.shapeop_editVertexForce(self._handle, number, pointer, place)
         check_message(self._handle)
+
+    def add_pressure(self, faces: Any, pressure: float) -> int:
+        """Adds a pressure on faces and returns the force's id.
+
+        ``faces``: an (m, k) integer array or a list of index lists of at least 3 points; a normal points to where they
+        run counter-clockwise. ``pressure``: force per area along the normals; below 0 against them.
+
+        The force on a face, shared among its corners, follows the points, and iterations are plain with it.
+        """
+        lists, number = _arrays.face_lists(faces, "faces"), _arrays.real(pressure, "pressure")
+        return self._count(lib.shapeop_addPressure(self._handle, *lists.indices, *lists.counts, number))
+
+    def add_normal_force(self, faces: Any, magnitude: float) -> int:
+        """Adds a force of length ``magnitude`` on every corner of faces, along the normal there; returns its id.
+
+        The normal of a point is that of the sum of the vector areas of the faces around it. Else as
+        :meth:`add_pressure`.
+        """
+        lists, number = _arrays.face_lists(faces, "faces"), _arrays.real(magnitude, "magnitude")
+        return self._count(lib.shapeop_addNormalForce(self._handle, *lists.indices, *lists.counts, number))
+
+    def edit_force_magnitude(self, id: int, magnitude: float) -> None:
+        """Replaces the pressure, or the length of the normal force, of the force ``id``."""
+        number, new = _arrays.integer(id, "id"), _arrays.real(magnitude, "magnitude")
+        check(lib.shapeop_editForceMagnitude(self._handle, number, new), self._handle)
 
     def remove_force(self, id: int) -> None:
         """Removes a force. Its id is never given out again."""
