@@ -46,6 +46,11 @@
  */
 #define SHAPEOP_ABI_VERSION 1
 
+/**
+ * A bit of the flags of `shapeop_addConstraints`: the constraints are hard.
+ */
+#define SHAPEOP_HARD 1
+
 #if !defined(SHAPEOP_COMPAT_API_H)
 /**
  * Why a call was refused. The numbers are frozen: 0 to 3 are those of libShapeOp 0.1.0, new ones are added from 16 up.
@@ -432,6 +437,99 @@ typedef struct shapeop_solve_report {
      */
     unsigned int linear_iterations;
 } shapeop_solve_report;
+
+/**
+ * The weights of the objective `1/2 handle sum |p - t|^2 + 1/2 closeness sum |p - p0|^2 + 1/2 fairness |L (p - p0)|^2` plus
+ * the soft constraints, `p0` being the points at initialisation. Start from `shapeop_defaultObjective`.
+ */
+typedef struct shapeop_objective {
+    /**
+     * In: `sizeof(shapeop_objective)`.
+     */
+    unsigned int struct_size;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * Above 0. Default 100.
+     */
+    double handle_weight;
+    /**
+     * Above 0. Default 0.1.
+     */
+    double closeness_weight;
+    /**
+     * At least 0; without `shapeop_setFairness` it has nothing to weigh. Default 1.
+     */
+    double fairness_weight;
+    /**
+     * How far a hard constraint may be from its set, relative to the bounding-box diagonal; at least 1e-14. Default 1e-12.
+     */
+    double tolerance;
+} shapeop_objective;
+
+/**
+ * What the last exploration found.
+ */
+typedef struct shapeop_exploration {
+    /**
+     * In: `sizeof(shapeop_exploration)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Sweeps of the splitting method.
+     */
+    unsigned int sweep_count;
+    /**
+     * Newton steps.
+     */
+    unsigned int newton_step_count;
+    /**
+     * 1 if the points are a solution: every hard constraint is met and the gradient vanishes, both within the tolerance.
+     */
+    int is_solution;
+    /**
+     * The largest distance of a hard constraint from its set, in model units.
+     */
+    double largest_violation;
+    /**
+     * The hard constraint that it is of; -1 if there is none.
+     */
+    int worst_constraint;
+    /**
+     * Hard constraints whose multiplier is at its cap: the contradictions, as far as they are known.
+     */
+    int capped_count;
+    /**
+     * The largest distance between what multipliers ask for and what the points are, in model units.
+     */
+    double primal_residual;
+    /**
+     * The largest gradient of the Lagrangian at a point, relative to the force that moves it by the model's size.
+     */
+    double dual_residual;
+    /**
+     * The terms of the objective.
+     */
+    double handle_term;
+    /**
+     * See `handle_term`.
+     */
+    double closeness_term;
+    /**
+     * See `handle_term`.
+     */
+    double fairness_term;
+    /**
+     * See `handle_term`.
+     */
+    double soft_term;
+    /**
+     * The penalty of the sweeps.
+     */
+    double penalty;
+} shapeop_exploration;
 
 /**
  * What recipes take. Start from `shapeop_defaultRecipeOptions`.
@@ -935,6 +1033,120 @@ SHAPEOP_API enum shapeop_err shapeop_energy(struct ShapeOpSolver *op, double *ou
  * `out` is null or writable for `nb` doubles.
  */
 SHAPEOP_API enum shapeop_err shapeop_getViolations(struct ShapeOpSolver *op, double *out, int nb);
+
+/**
+ * Makes a constraint hard (`is_hard` 1), to be met exactly, or soft (0). The weight of a hard constraint is its priority where
+ * not everything can be met. Solving goes on from where it is.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_setHard(struct ShapeOpSolver *op,
+                                 int constraint_id,
+                                 int is_hard);
+
+/**
+ * 1 if `constraint_id` is a hard constraint, 0 if it is soft or none, -1 if the call is refused.
+ */
+SHAPEOP_API int shapeop_isHard(struct ShapeOpSolver *op, int constraint_id);
+
+/**
+ * Makes a point a handle, drawn to `target` (3 coordinates), or moves its target. Solving goes on from where it is.
+ *
+ * # Safety
+ * `target` is null or readable for 3 doubles.
+ */
+SHAPEOP_API enum shapeop_err shapeop_setHandle(struct ShapeOpSolver *op, int point, const double *target);
+
+/**
+ * Lets a handle go: the point is drawn to where it was at initialisation, as the others are. Refused if it is none.
+ */
+SHAPEOP_API enum shapeop_err shapeop_releaseHandle(struct ShapeOpSolver *op, int point);
+
+/**
+ * Writes the default weights to `objective`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `objective` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_defaultObjective(struct shapeop_objective *objective);
+
+/**
+ * Sets the weights of the objective; the rows of fairness stay.
+ *
+ * # Safety
+ * `objective` is null, or its `struct_size` is set and it is readable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_setObjective(struct ShapeOpSolver *op, const struct shapeop_objective *objective);
+
+/**
+ * Sets what the fairness term measures: `kind` (a `shapeop_fairness`), with faces or polylines as lists of points.
+ *
+ * - `indices`: all lists behind each other, `nb_indices` in all.
+ * - `counts`: the number of indices of each list, `nb_counts` in all.
+ *
+ * # Safety
+ * Each array is null or readable for its number of values.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_setFairness(struct ShapeOpSolver *op,
+                                     int kind,
+                                     const int *indices,
+                                     int nb_indices,
+                                     const int *counts,
+                                     int nb_counts);
+
+/**
+ * Writes what the last exploration found to `out`, whose `struct_size` must be set. Refused if there was none.
+ *
+ * # Safety
+ * `out` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_getExploration(struct ShapeOpSolver *op, struct shapeop_exploration *out);
+
+/**
+ * The number of hard constraints in the contradiction that the last exploration found; 0: none. Writes their ids to `ids`, which is
+ * null or has room for `nb`; a smaller `nb` than that number writes nothing. Without them the others can be met.
+ *
+ * # Safety
+ * `ids` is null or writable for `nb` ints.
+ */
+SHAPEOP_API
+int shapeop_getConflicts(struct ShapeOpSolver *op,
+                         int *ids,
+                         int nb);
+
+/**
+ * The number of weight classes of the solution in hand, or -1 if it is none: handles, closeness, fairness, and one per type of
+ * soft constraints.
+ */
+SHAPEOP_API
+int shapeop_weightClassCount(struct ShapeOpSolver *op);
+
+/**
+ * The name of a weight class: "handles", "closeness", "fairness", or the name of a type. Null if there is no such class. Valid until
+ * the library is unloaded.
+ */
+SHAPEOP_API
+const char *shapeop_weightClassName(struct ShapeOpSolver *op,
+                                    int index);
+
+/**
+ * How the solution in hand answers a change of each weight: refused unless the last solve ended in one.
+ *
+ * - `points`: null, or where `dp/d ln w` goes, in model units: 3 coordinates of every point for the first class, then for
+ *   the next, `nb_points` points per class.
+ * - `squares`: null, or where the change of every class's squares `w sum |.|^2` per change of the logarithm of a weight goes: a
+ *   row per weight, a column per class.
+ * - `nb_classes`: what `shapeop_weightClassCount` says.
+ *
+ * # Safety
+ * Each array is null or writable for its number of values.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_getSensitivities(struct ShapeOpSolver *op,
+                                          double *points,
+                                          int nb_points,
+                                          double *squares,
+                                          int nb_classes);
 
 /**
  * Makes `op` the solver of a problem, whose JSON form `docs/problem.schema.json` states: everything in it is replaced,

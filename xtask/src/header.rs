@@ -8,14 +8,26 @@ use anyhow::{Context, Result, bail};
 use crate::{declarations, shell};
 
 /// The sources of the C ABI, in the order in which the header groups functions.
-const SOURCES: [&str; 10] =
-    ["errors", "handles", "solver", "points", "references", "constraints", "forces", "registry", "report", "problem"];
+const SOURCES: [&str; 11] = [
+    "errors",
+    "handles",
+    "solver",
+    "points",
+    "references",
+    "constraints",
+    "forces",
+    "registry",
+    "report",
+    "explore",
+    "problem",
+];
 
 /// Writes the header and the declarations for other languages, or only compares.
 pub fn run(check: bool) -> Result<()> {
     let root = shell::root();
     let source = |name: &&str| root.join("src/capi").join(name).with_extension("rs");
     let sources: Vec<PathBuf> = SOURCES.iter().map(source).collect();
+    check_sources(&sources)?;
     let mut files = vec![("include/shapeop.h", header(&sources)?)];
     files.extend(declarations::files(&sources)?);
     let mut outdated = Vec::new();
@@ -39,6 +51,17 @@ pub fn run(check: bool) -> Result<()> {
         return Ok(());
     }
     bail!("{} not what src/capi says: run `cargo xtask header` and commit the difference", outdated.join(", "))
+}
+
+/// Refuses a file with exported functions that [`SOURCES`] does not have.
+fn check_sources(sources: &[PathBuf]) -> Result<()> {
+    for entry in fs::read_dir(shell::root().join("src/capi"))? {
+        let file = entry?.path();
+        if fs::read_to_string(&file)?.contains("#[unsafe(no_mangle)]") && !sources.contains(&file) {
+            bail!("{} exports functions, and is not in the list of sources in xtask/src/header.rs", file.display());
+        }
+    }
+    Ok(())
 }
 
 fn header(sources: &[PathBuf]) -> Result<String> {

@@ -98,6 +98,17 @@ namespace ShapeOp
         Infeasible = 6,
     }
 
+    /// <summary>What the fairness term measures displacements with.</summary>
+    public enum Fairness
+    {
+        /// <summary>The displacement of a point minus the mean of its neighbours'. The lists are faces, or edges as lists of two.</summary>
+        Laplacian = 0,
+        /// <summary>Second differences along polylines, which the lists are; a closed one repeats its first point at its end.</summary>
+        SecondDifferences = 1,
+        /// <summary>Third differences along polylines.</summary>
+        ThirdDifferences = 2,
+    }
+
     internal static class Native
     {
         internal const int AbiVersion = 1;
@@ -171,6 +182,36 @@ namespace ShapeOp
             internal uint iteration;
             internal double energy;
             internal double largest_move;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_objective
+        {
+            internal uint struct_size;
+            internal uint reserved;
+            internal double handle_weight;
+            internal double closeness_weight;
+            internal double fairness_weight;
+            internal double tolerance;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_exploration
+        {
+            internal uint struct_size;
+            internal uint sweep_count;
+            internal uint newton_step_count;
+            internal int is_solution;
+            internal double largest_violation;
+            internal int worst_constraint;
+            internal int capped_count;
+            internal double primal_residual;
+            internal double dual_residual;
+            internal double handle_term;
+            internal double closeness_term;
+            internal double fairness_term;
+            internal double soft_term;
+            internal double penalty;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -401,6 +442,53 @@ namespace ShapeOp
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern ErrorCode shapeop_getViolations(SolverHandle op, double[] @out, int nb);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_setHard(SolverHandle op, int constraintId, int isHard);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_isHard(SolverHandle op, int constraintId);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_setHandle(SolverHandle op, int point, double[] target);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_releaseHandle(SolverHandle op, int point);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_defaultObjective(ref shapeop_objective objective);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_setObjective(SolverHandle op, ref shapeop_objective objective);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_setFairness(
+            SolverHandle op,
+            int kind,
+            int[] indices,
+            int nbIndices,
+            int[] counts,
+            int nbCounts);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_getExploration(SolverHandle op, ref shapeop_exploration @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_getConflicts(SolverHandle op, int[] ids, int nb);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_weightClassCount(SolverHandle op);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_weightClassName(SolverHandle op, int index);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_getSensitivities(
+            SolverHandle op,
+            double[] points,
+            int nbPoints,
+            double[] squares,
+            int nbClasses);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern ErrorCode shapeop_setProblem(

@@ -50,6 +50,11 @@ SO_OUTCOME_STALLED = 4
 SO_OUTCOME_UNBOUNDED = 5
 SO_OUTCOME_INFEASIBLE = 6
 
+# shapeop_fairness
+SO_FAIRNESS_LAPLACIAN = 0
+SO_FAIRNESS_SECOND_DIFFERENCES = 1
+SO_FAIRNESS_THIRD_DIFFERENCES = 2
+
 
 class shapeop_constraint_type(ctypes.Structure):
     _fields_ = [
@@ -118,6 +123,36 @@ class shapeop_progress(ctypes.Structure):
         ("iteration", c_uint),
         ("energy", c_double),
         ("largest_move", c_double),
+    ]
+
+
+class shapeop_objective(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("reserved", c_uint),
+        ("handle_weight", c_double),
+        ("closeness_weight", c_double),
+        ("fairness_weight", c_double),
+        ("tolerance", c_double),
+    ]
+
+
+class shapeop_exploration(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("sweep_count", c_uint),
+        ("newton_step_count", c_uint),
+        ("is_solution", c_int),
+        ("largest_violation", c_double),
+        ("worst_constraint", c_int),
+        ("capped_count", c_int),
+        ("primal_residual", c_double),
+        ("dual_residual", c_double),
+        ("handle_term", c_double),
+        ("closeness_term", c_double),
+        ("fairness_term", c_double),
+        ("soft_term", c_double),
+        ("penalty", c_double),
     ]
 
 
@@ -215,6 +250,18 @@ FUNCTIONS = {
     ),
     "shapeop_energy": (c_int, [c_void_p, POINTER(c_double)]),
     "shapeop_getViolations": (c_int, [c_void_p, POINTER(c_double), c_int]),
+    "shapeop_setHard": (c_int, [c_void_p, c_int, c_int]),
+    "shapeop_isHard": (c_int, [c_void_p, c_int]),
+    "shapeop_setHandle": (c_int, [c_void_p, c_int, POINTER(c_double)]),
+    "shapeop_releaseHandle": (c_int, [c_void_p, c_int]),
+    "shapeop_defaultObjective": (c_int, [POINTER(shapeop_objective)]),
+    "shapeop_setObjective": (c_int, [c_void_p, POINTER(shapeop_objective)]),
+    "shapeop_setFairness": (c_int, [c_void_p, c_int, POINTER(c_int), c_int, POINTER(c_int), c_int]),
+    "shapeop_getExploration": (c_int, [c_void_p, POINTER(shapeop_exploration)]),
+    "shapeop_getConflicts": (c_int, [c_void_p, POINTER(c_int), c_int]),
+    "shapeop_weightClassCount": (c_int, [c_void_p]),
+    "shapeop_weightClassName": (c_char_p, [c_void_p, c_int]),
+    "shapeop_getSensitivities": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_double), c_int]),
     "shapeop_setProblem": (c_int, [c_void_p, c_char_p, POINTER(shapeop_solve_options)]),
     "shapeop_problemText": (c_char_p, [c_char_p]),
     "shapeop_defaultRecipeOptions": (c_int, [POINTER(shapeop_recipe_options)]),
