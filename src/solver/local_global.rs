@@ -346,7 +346,7 @@ fn overflow() -> Error {
 
 impl Report {
     /// False if a number overflowed.
-    fn is_finite(&self) -> bool {
+    pub(super) fn is_finite(&self) -> bool {
         [self.energy_before, self.energy_after, self.largest_move].iter().all(|number| number.is_finite())
     }
 

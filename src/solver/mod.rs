@@ -565,6 +565,7 @@ impl Solver {
     fn check_point_count(&self, count: usize) -> Result<()> {
         let found = self.constraints.first_beyond(count).map(|(id, point)| (format!("constraint {id}"), point));
         let found = found.or_else(|| self.forces.first_beyond(count).map(|(id, point)| (format!("force {id}"), point)));
+        let found = found.or_else(|| self.explorer.first_beyond(count));
         match found {
             None => Ok(()),
             Some((what, point)) => {

@@ -94,6 +94,15 @@ pub(crate) enum Call {
     AddPolyline(Op, Array<f64>, c_int),
     /// Coordinates, triangles.
     AddMesh(Op, Array<f64>, Array<c_int>),
+    SetHard(Op, c_int, c_int),
+    SetHandle(Op, c_int, Option<[f64; 3]>),
+    ReleaseHandle(Op, c_int),
+    /// Handle, closeness and fairness weight, tolerance.
+    SetObjective(Op, [f64; 4]),
+    /// Kind, indices, counts.
+    SetFairness(Op, c_int, Array<c_int>, Array<c_int>),
+    Sensitivities(Op, bool),
+    Exploration(Op, Option<u32>),
     SolveUntil(Op, Option<Options>, Option<u32>, Option<u32>),
     Energy(Op, bool),
     Violations(Op, bool, c_int),
@@ -294,6 +303,12 @@ pub(crate) fn call() -> impl Strategy<Value = Call> {
             .prop_map(|(o, p, closed)| Call::AddPolyline(o, triples(p), closed)),
         3 => (op(), points(), prop_oneof![5 => array(0..3_i32, 3..20), 1 => array(integer(), 0..20)])
             .prop_map(|(o, p, t)| Call::AddMesh(o, triples(p), triples(t))),
+        3 => (op(), integer(), prop_oneof![9 => 0..2, 1 => integer()]).prop_map(|(o, id, is)| Call::SetHard(o, id, is)),
+        2 => (op(), integer(), force()).prop_map(|(o, id, target)| Call::SetHandle(o, id, target)),
+        1 => (op(), integer()).prop_map(|(o, id)| Call::ReleaseHandle(o, id)),
+        1 => (op(), [0.1..99.0_f64, 0.1..9.0_f64, 0.0..9.0_f64, 1e-13..1e-3_f64]).prop_map(|(o, w)| Call::SetObjective(o, w)),
+        1 => (op(), [number(), number(), number(), number()]).prop_map(|(o, w)| Call::SetObjective(o, w)),
+        1 => (op(), prop_oneof![9 => 0..3, 1 => integer()], faces()).prop_map(|(o, k, (i, c))| Call::SetFairness(o, k, i, c)),
     ];
     let solves = prop_oneof![
         4 => op().prop_map(Call::Init),
@@ -308,6 +323,9 @@ pub(crate) fn call() -> impl Strategy<Value = Call> {
         1 => (op(), integer()).prop_map(|(o, id)| Call::IsDegenerate(o, id)),
         2 => (op(), any::<bool>()).prop_map(|(o, null)| Call::Energy(o, null)),
         2 => (op(), any::<bool>(), integer()).prop_map(|(o, null, n)| Call::Violations(o, null, n)),
+        1 => (op(), any::<bool>()).prop_map(|(o, null)| Call::Sensitivities(o, null)),
+        1 => (op(), prop::option::of(struct_size(size_of::<shapeop_exploration>())))
+            .prop_map(|(o, s)| Call::Exploration(o, s)),
         1 => (integer(), prop::option::of(named_type)).prop_map(|(i, s)| Call::ConstraintType(i, s)),
         1 => (integer(), integer(), prop::option::of(scalar)).prop_map(|(i, j, s)| Call::ConstraintScalar(i, j, s)),
         1 => integer().prop_map(Call::ErrorText),

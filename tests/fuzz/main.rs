@@ -290,6 +290,39 @@ fn make(call: &Call, own: &mut Own) -> Result<bool, String> {
                 let (data, count) = (points.data(), triples(points));
                 Ok(shapeop_addReferenceMesh(at(op), data, count, indices.data(), triples(indices)) < 0)
             }
+            Call::SetHard(op, id, is_hard) => refused(shapeop_setHard(at(op), *id, *is_hard)),
+            Call::SetHandle(op, point, target) => refused(shapeop_setHandle(at(op), *point, vector(target))),
+            Call::ReleaseHandle(op, point) => refused(shapeop_releaseHandle(at(op), *point)),
+            Call::SetObjective(op, [handle_weight, closeness_weight, fairness_weight, tolerance]) => {
+                let objective = shapeop_objective {
+                    struct_size: size_of::<shapeop_objective>() as u32,
+                    reserved: 0,
+                    handle_weight: *handle_weight,
+                    closeness_weight: *closeness_weight,
+                    fairness_weight: *fairness_weight,
+                    tolerance: *tolerance,
+                };
+                refused(shapeop_setObjective(at(op), &raw const objective))
+            }
+            Call::SetFairness(op, kind, indices, counts) => {
+                let (data, count) = (indices.data(), indices.count());
+                refused(shapeop_setFairness(at(op), *kind, data, count, counts.data(), counts.count()))
+            }
+            Call::Sensitivities(op, is_null) => {
+                let mut room = [0.0; 3 * MOST_POINTS * 64];
+                let out = if *is_null { ptr::null_mut() } else { room.as_mut_ptr() };
+                let (points, classes) = (shapeop_pointCount(at(op)), shapeop_weightClassCount(at(op)));
+                let is_refused = refused(shapeop_getSensitivities(at(op), out, points, ptr::null_mut(), classes))?;
+                check(room.iter().all(|number| number.is_finite()), "a sensitivity is not finite")?;
+                Ok(is_refused)
+            }
+            Call::Exploration(op, size) => {
+                let mut room = Room::stating(size.unwrap_or(0));
+                let out = if size.is_some() { room.0.as_mut_ptr().cast() } else { ptr::null_mut() };
+                let mut ids = [-1; 16 * LONGEST_SEQUENCE];
+                check(shapeop_getConflicts(at(op), ids.as_mut_ptr(), ids.len() as c_int) >= -1, "a count is none")?;
+                refused(shapeop_getExploration(at(op), out))
+            }
             Call::SolveUntil(op, options, stop_at, report_size) => {
                 let mut options_room = Room::stating(options.as_ref().map_or(0, |options| options.struct_size));
                 if let Some(Options { max_iterations, tolerance, time_budget_seconds, .. }) = options {
@@ -369,6 +402,9 @@ fn named(call: &Call, own: &Own) -> *mut ShapeOpSolver {
         Call::AddVertexForce(op, ..) | Call::EditVertexForce(op, ..) | Call::RemoveForce(op, _) => Some(op),
         Call::AddPressure(op, ..) | Call::AddNormalForce(op, ..) | Call::EditForceMagnitude(op, ..) => Some(op),
         Call::AddPolyline(op, ..) | Call::AddMesh(op, ..) => Some(op),
+        Call::SetHard(op, ..) | Call::SetHandle(op, ..) | Call::ReleaseHandle(op, _) => Some(op),
+        Call::SetObjective(op, _) | Call::SetFairness(op, ..) => Some(op),
+        Call::Sensitivities(op, _) | Call::Exploration(op, _) => Some(op),
         Call::SolveUntil(op, ..) | Call::Energy(op, _) | Call::Violations(op, ..) => Some(op),
     };
     op.map_or(ptr::null_mut(), |op| own.named(op))

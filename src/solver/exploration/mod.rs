@@ -114,6 +114,16 @@ pub struct Found {
     pub conflicts: Vec<ConstraintId>,
 }
 
+impl Found {
+    /// False if a number overflowed.
+    fn is_finite(&self) -> bool {
+        let ObjectiveTerms { handles, closeness, fairness, soft } = self.terms;
+        let [primal, dual] = self.residuals.map_or([0.0; 2], |residuals| [residuals.primal, residuals.dual]);
+        let numbers = [handles, closeness, fairness, soft, primal, dual, self.largest_violation, self.penalty];
+        numbers.iter().all(|number| number.is_finite())
+    }
+}
+
 impl Solver {
     /// True if there is anything to explore: a hard constraint, a handle or an objective.
     pub(super) fn explores(&self) -> bool {
@@ -242,7 +252,8 @@ impl Solver {
         });
         explorer.has_new_targets = false;
         let result = result.and_then(|(report, found)| {
-            if self.points.iter().all(|point| point.is_finite()) {
+            let are_finite = self.points.iter().all(|point| point.is_finite());
+            if are_finite && report.is_finite() && found.is_finite() {
                 explorer.found = Some(found);
                 return Ok(report);
             }
@@ -261,6 +272,13 @@ impl Solver {
 }
 
 impl Explorer {
+    /// A handle or a row of the fairness term that refers to a point at or beyond `point_count`, with that point.
+    pub(super) fn first_beyond(&self, point_count: usize) -> Option<(String, u32)> {
+        let handle = self.handles.keys().next_back().map(|&point| ("a handle".to_owned(), point));
+        let row = self.rows.greatest_point().map(|point| ("the fairness".to_owned(), point));
+        handle.into_iter().chain(row).find(|(_, point)| *point as usize >= point_count)
+    }
+
     /// To be called when constraints, weights or points came or went.
     pub(super) fn invalidate(&mut self) {
         self.is_outdated = true;
@@ -395,6 +413,12 @@ impl Engine {
             found.sweeps += 1;
             solver.points.copy_from_slice(&self.splitting.points);
             report.largest_move = sweep.largest_move / self.size;
+            let are_finite = solver.points.iter().all(|point| point.is_finite());
+            if !(are_finite && sweep.residual.is_finite() && sweep.largest_move.is_finite()) {
+                // The caller of this function refuses it and restores the points.
+                report.energy_after = f64::NAN;
+                return Ok((report, found));
+            }
             let now = Progress {
                 iteration: found.sweeps,
                 evaluations: found.sweeps,
@@ -404,9 +428,6 @@ impl Engine {
             };
             if progress(&now) == ControlFlow::Break(()) {
                 report.outcome = Outcome::Cancelled;
-                break;
-            }
-            if !(sweep.residual.is_finite() && sweep.largest_move.is_finite()) {
                 break;
             }
             settled = if sweep.switched == 0 { settled + 1 } else { 0 };
