@@ -212,6 +212,24 @@ typedef enum shapeop_acceleration {
     SO_ACCELERATION_AUTOMATIC = 3,
 } shapeop_acceleration;
 
+/**
+ * What the fairness term measures displacements with.
+ */
+typedef enum shapeop_fairness {
+    /**
+     * The displacement of a point minus the mean of its neighbours'. The lists are faces, or edges as lists of two.
+     */
+    SO_FAIRNESS_LAPLACIAN = 0,
+    /**
+     * Second differences along polylines, which the lists are; a closed one repeats its first point at its end.
+     */
+    SO_FAIRNESS_SECOND_DIFFERENCES = 1,
+    /**
+     * Third differences along polylines.
+     */
+    SO_FAIRNESS_THIRD_DIFFERENCES = 2,
+} shapeop_fairness;
+
 #if !defined(SHAPEOP_COMPAT_API_H)
 /**
  * A solver. What points to it is no address but a small integer, a handle.

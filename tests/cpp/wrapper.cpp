@@ -170,6 +170,9 @@ void solvers_are_deleted_once_and_in_time() {
 
 void the_registry_describes_every_type() {
     Sheet sheet;
+    // Types that refer to a shape take the first of its kind unless they are told.
+    sheet.solver.add_reference_polyline(sheet.points);
+    sheet.solver.add_reference_mesh(sheet.points, {0, 1, 2});
     const std::vector<shapeop::ConstraintType> types = shapeop::constraint_types();
     check(types.size() >= 18, "those of libShapeOp at least");
     for (const shapeop::ConstraintType &type : types) {
@@ -236,6 +239,136 @@ void faces_are_measured() {
     }
 }
 
+void a_hard_plane_is_the_best_fit_plane() {
+    // Corners alternately above and below z = 0: with closeness alone the nearest planar quad is the square itself.
+    Solver solver;
+    solver.set_points({0, 0, 0.1, 1, 0, -0.1, 1, 1, 0.1, 0, 1, -0.1});
+    const std::vector<int> planes = solver.add_constraints("Plane", {0, 1, 2, 3}, {4}, {1.0}, {}, true);
+    check(solver.is_hard(planes.at(0)) && !solver.is_hard(7), "which are hard");
+    shapeop::Objective objective;
+    near(objective.handle_weight, 100, "a default");
+    objective.fairness_weight = 0;
+    solver.set_objective(objective);
+    solver.init();
+    check(solver.solve_until().outcome == SO_OUTCOME_CONVERGED, "converged");
+    const std::vector<double> points = solver.points();
+    const std::vector<double> square{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        near(points[i], square[i], "the square", 1e-11);
+    }
+    const shapeop::Exploration found = solver.exploration();
+    check(found.is_solution == 1 && found.worst_constraint == 0 && found.largest_violation < 1e-11, "a solution");
+    near(found.closeness_term, 0.002, "half of 0.1 times 4 * 0.1^2", 1e-12);
+    check(solver.conflicts().empty(), "no contradiction");
+    solver.set_hard(planes[0], false);
+    check(!solver.is_hard(planes[0]), "soft again");
+}
+
+void a_handle_takes_its_edge_along_as_the_weights_say() {
+    // A hard length 1 along x: 3 (t - 1)^2 + t^2 is least at t = 3/4, and dt / d ln w is 3/16 for the handle.
+    Solver solver;
+    solver.set_points({0, 0, 0, 1, 0, 0});
+    const int edge = solver.add_constraint("EdgeLength", {0, 1}, 1, {1, 1});
+    solver.set_hard(edge);
+    shapeop::Objective objective;
+    objective.handle_weight = 3;
+    objective.closeness_weight = 1;
+    objective.fairness_weight = 0;
+    solver.set_objective(objective);
+    solver.init();
+    solver.set_handle(1, {2, 0, 0});
+    solver.solve_until();
+    near(solver.points()[0], 0.75, "t");
+    near(solver.exploration().handle_term, 3.0 / 32, "half of 3 / 16");
+    const shapeop::Sensitivities answer = solver.sensitivities();
+    check(answer.classes == std::vector<std::string>({"handles", "closeness", "fairness"}), "the classes");
+    check(answer.points.size() == 3 * 2 * 3 && answer.squares.size() == 9, "their sizes");
+    near(answer.points.at(0), 3.0 / 16, "handles", 1e-8);
+    near(answer.points.at(6), -3.0 / 16, "closeness", 1e-8);
+    near(answer.points.at(12), 0, "fairness", 1e-12);
+    near(answer.squares.at(0), -2 * 3 * 0.25 * 3 / 16, "the square of the handle", 1e-8);
+    solver.release_handle(1);
+    solver.solve_until();
+    near(solver.points()[0], 0, "released");
+}
+
+void fairness_is_measured_on_what_it_is_told() {
+    // Second differences of 3 points along z, the last drawn to 1: the gradient w (z - t) + f L^T L z vanishes.
+    const auto solved = [](const std::vector<int> &indices, const std::vector<int> &counts) {
+        Solver solver;
+        solver.set_points({0, 0, 0, 1, 0, 0, 2, 0, 0});
+        shapeop::Objective objective;
+        objective.handle_weight = 4;
+        objective.closeness_weight = 0.5;
+        objective.fairness_weight = 2;
+        solver.set_objective(objective);
+        solver.set_fairness(SO_FAIRNESS_SECOND_DIFFERENCES, indices, counts);
+        solver.set_handle(2, {2, 0, 1});
+        solver.init();
+        solver.solve_until();
+        const std::vector<double> points = solver.points();
+        return std::array<double, 3>{points[2], points[5], points[8]};
+    };
+    const auto z = solved({0, 1, 2}, {3});
+    const double difference = z[0] - 2 * z[1] + z[2];
+    near(0.5 * z[0] + 2 * difference, 0, "first");
+    near(0.5 * z[1] - 4 * difference, 0, "second");
+    near(4 * (z[2] - 1) + 2 * difference, 0, "last");
+    check(std::abs(difference) > 1e-2, "fairness counts");
+    // Once for all, once for each: the same row twice.
+    const auto twice = solved({0, 1, 2, 0, 1, 2}, {3});
+    check(twice == solved({0, 1, 2, 0, 1, 2}, {3, 3}), "counts of both kinds");
+    near(0.5 * twice[0] + 4 * (twice[0] - 2 * twice[1] + twice[2]), 0, "twice");
+}
+
+void a_contradiction_is_named() {
+    Solver solver;
+    solver.set_points({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+    solver.add_constraints("EdgeLength", {0, 1, 1, 2, 2, 3, 3, 0}, {2}, {2.0}, Scalars::same({1, 1}), true);
+    const int planted = solver.add_constraints("EdgeLength", {0, 1}, {2}, {1.0}, Scalars::same({3, 3}), true)[0];
+    solver.set_fairness(SO_FAIRNESS_LAPLACIAN, {0, 1, 2, 3}, {4});
+    solver.init();
+    check(solver.solve_until().outcome == SO_OUTCOME_INFEASIBLE, "infeasible");
+    check(solver.conflicts() == std::vector<int>{planted}, "which one");
+}
+
+void points_are_drawn_to_references() {
+    Solver solver;
+    const std::vector<double> square{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    const int open = solver.add_reference_polyline(square), closed = solver.add_reference_polyline(square, true);
+    const int mesh = solver.add_reference_mesh(square, {0, 1, 2, 0, 2, 3});
+    check(open == 0 && closed == 1 && mesh == 2 && solver.reference_count() == 3, "ids");
+    solver.set_points({-1, 0.25, 0, -1, 0.25, 0, 0.75, 0.25, 3});
+    solver.add_constraints("OnCurve", {0, 1}, {1}, {1.0}, Scalars::each({double(open), double(closed)}));
+    solver.add_constraint("OnMesh", {2}, 1, {double(mesh)});
+    solver.init();
+    solver.solve(1);
+    const std::vector<double> points = solver.points();
+    check(points[0] == 0 && points[1] == 0, "the end of the open one");
+    check(points[3] == 0 && points[4] == 0.25, "the last segment of the closed one");
+    check(points[6] == 0.75 && points[7] == 0.25 && points[8] == 0, "the mesh");
+}
+
+void forces_on_faces_move_held_points_by_their_size_over_the_weight() {
+    Solver solver;
+    const std::vector<double> square{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    solver.set_points(square);
+    solver.add_constraints("Closeness", {0, 1, 2, 3}, {1}, {2.0});
+    const int pressure = solver.add_pressure({0, 1, 2, 3}, {4}, 8);
+    solver.init();
+    const auto height = [&] {
+        solver.set_points(square);
+        solver.solve(1);
+        return solver.points()[2];
+    };
+    near(height(), 1, "a quarter of 8 over 2");
+    solver.edit_force_magnitude(pressure, -4);
+    near(height(), -0.5, "a quarter of -4 over 2");
+    solver.remove_force(pressure);
+    solver.add_normal_force({0, 1, 2, 0, 2, 3}, {3}, 3);
+    near(height(), 1.5, "3 over 2, once per point");
+}
+
 void arrays_of_all_kinds_are_taken_as_they_lie() {
     static_assert(!std::is_copy_constructible_v<Solver> && !std::is_copy_assignable_v<Solver>);
     static_assert(std::is_nothrow_move_constructible_v<Solver> && std::is_nothrow_move_assignable_v<Solver>);
@@ -282,6 +415,13 @@ int main() {
         {"a recipe is the problem that one would add by hand", a_recipe_is_the_problem_that_one_would_add_by_hand},
         {"anchors keep their place", anchors_keep_their_place},
         {"faces are measured", faces_are_measured},
+        {"a hard plane is the best fit plane", a_hard_plane_is_the_best_fit_plane},
+        {"a handle takes its edge along as the weights say", a_handle_takes_its_edge_along_as_the_weights_say},
+        {"fairness is measured on what it is told", fairness_is_measured_on_what_it_is_told},
+        {"a contradiction is named", a_contradiction_is_named},
+        {"points are drawn to references", points_are_drawn_to_references},
+        {"forces on faces move held points by their size over the weight",
+         forces_on_faces_move_held_points_by_their_size_over_the_weight},
         {"arrays of all kinds are taken as they lie", arrays_of_all_kinds_are_taken_as_they_lie},
     });
 }

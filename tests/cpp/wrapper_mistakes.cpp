@@ -156,6 +156,49 @@ void an_exception_in_the_callback_comes_out_of_solve_until() {
     sheet.solver.solve(1); // and it goes on
 }
 
+void what_cannot_be_explored_is_named_and_changes_nothing() {
+    Tug tug;
+    Solver &solver = tug.solver;
+    const double nan = std::nan("");
+    refused(SO_UNMATCHING_CONSTRAINT_ID, {"77"}, "no constraint", [&] { solver.set_hard(77); });
+    refused(SO_INVALID_VALUE, {"EdgeStrain", "cannot be hard"}, "no length",
+            [&] { solver.add_constraints("EdgeStrain", {0, 0}, {2}, {1.0}, {}, true); });
+    refused(SO_INDEX_OUT_OF_RANGE, {"1 is out of range for 1 points"}, "no point",
+            [&] { solver.set_handle(1, {0, 0, 0}); });
+    refused(SO_INVALID_VALUE, {"target", "NaN"}, "target", [&] { solver.set_handle(0, {0, nan, 0}); });
+    refused(SO_INVALID_ARGUMENT_LENGTH, {"target", "3", "2"}, "short target", [&] { solver.set_handle(0, {0, 0}); });
+    refused(SO_INVALID_VALUE, {"point 0 is no handle"}, "release", [&] { solver.release_handle(0); });
+    shapeop::Objective objective;
+    objective.closeness_weight = -1;
+    refused(SO_INVALID_VALUE, {"closeness_weight", "-1"}, "weight", [&] { solver.set_objective(objective); });
+    refused(SO_INDEX_OUT_OF_RANGE, {"indices[1]", "4"}, "fairness",
+            [&] { solver.set_fairness(SO_FAIRNESS_LAPLACIAN, {0, 4}, {2}); });
+    refused(SO_INVALID_ARGUMENT_LENGTH, {"counts[0]", "3"}, "counts",
+            [&] { solver.set_fairness(SO_FAIRNESS_LAPLACIAN, {0, 0}, {3, 1}); });
+    refused(SO_INVALID_VALUE, {"kind", "3"}, "kind",
+            [&] { solver.set_fairness(static_cast<shapeop_fairness>(3), {}, {}); });
+    refused(SO_NOT_INITIALISED, {"no exploration yet"}, "nothing found", [&] { solver.exploration(); });
+    refused(SO_NOT_INITIALISED, {"solve"}, "no solution", [&] { solver.sensitivities(); });
+    check(solver.conflicts().empty(), "no contradiction");
+    refused(SO_INVALID_ARGUMENT_LENGTH, {"points", "at least 2", "1"}, "a polyline of one point",
+            [&] { solver.add_reference_polyline({0, 0, 0}); });
+    refused(SO_INDEX_OUT_OF_RANGE, {"triangles[0][2]", "3"}, "no corner",
+            [&] { solver.add_reference_mesh({0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 3}); });
+    refused(SO_INVALID_ARGUMENT_LENGTH, {"triangles", "found 4"}, "four indices",
+            [&] { solver.add_reference_mesh({0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2, 0}); });
+    refused(SO_INVALID_VALUE, {"NaN"}, "pressure", [&] { solver.add_pressure({0, 0, 0}, {3}, nan); });
+    refused(SO_INVALID_ARGUMENT_LENGTH, {"faces[0]", "2"}, "two corners",
+            [&] { solver.add_normal_force({0, 0}, {2}, 1); });
+    refused(SO_UNMATCHING_FORCE_ID, {"0"}, "no force", [&] { solver.edit_force_magnitude(0, 1); });
+    check(solver.reference_count() == 0 && solver.force_count() == 0 && solver.constraint_count() == 2, "as it was");
+    near(tug.rest(), 3, "and as it rested");
+    solver.init_dynamic(1, 1, 1);
+    refused(SO_INVALID_VALUE, {"static"}, "hard in dynamic mode", [&] { solver.set_hard(tug.left); });
+    Solver moved = std::move(solver);
+    refused(SO_INVALID_HANDLE, {"handle"}, "moved from", [&] { solver.set_handle(0, {0, 0, 0}); });
+    refused(SO_INVALID_HANDLE, {"handle"}, "moved from", [&] { solver.sensitivities(); });
+}
+
 void a_problem_that_cannot_be_read_is_refused_with_its_place() {
     Tug tug;
     refused(SO_INVALID_INPUT, {}, "no JSON", [&] { tug.solver.set_problem("{"); });
@@ -190,6 +233,7 @@ int main() {
         {"a solver that was moved from refuses", a_solver_that_was_moved_from_refuses},
         {"an exception in the callback comes out of solve until",
          an_exception_in_the_callback_comes_out_of_solve_until},
+        {"what cannot be explored is named and changes nothing", what_cannot_be_explored_is_named_and_changes_nothing},
         {"a problem that cannot be read is refused with its place",
          a_problem_that_cannot_be_read_is_refused_with_its_place},
         {"faces that cannot be measured are refused", faces_that_cannot_be_measured_are_refused},

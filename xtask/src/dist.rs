@@ -40,9 +40,10 @@ const COMPAT_NAMES: [&str; 3] = ["libShapeOp.so", "ShapeOp.0.1.0.dll", "libShape
 const COMPAT_NAMES: [&str; 2] = ["libShapeOp.so", "ShapeOp.0.1.0.dll"];
 
 /// The C++ wrapper, below `bindings/cpp/include` and below `include`.
-const WRAPPER: [&str; 6] = [
+const WRAPPER: [&str; 7] = [
     "shapeop.hpp",
     "shapeop/error.hpp",
+    "shapeop/exploration.hpp",
     "shapeop/problem.hpp",
     "shapeop/registry.hpp",
     "shapeop/solver.hpp",

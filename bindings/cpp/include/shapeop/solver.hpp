@@ -3,6 +3,7 @@
 #define SHAPEOP_SOLVER_HPP
 
 #include "error.hpp"
+#include "exploration.hpp"
 #include "span.hpp"
 
 #include <cstddef>
@@ -120,11 +121,12 @@ public:
     }
 
     /// Adds many of one type, all or none; returns their ids. `ids` are the point indices of all, behind each other;
-    /// `counts` says how many belong to each, `weights` how heavy it is: one number for all, or one for each.
+    /// `counts` says how many belong to each, `weights` how heavy it is: one number for all, or one for each. Hard ones
+    /// are met exactly.
     std::vector<int> add_constraints(const std::string &type, Indices ids, Indices counts, Numbers weights = {1.0},
-                                     Scalars scalars = {}) {
+                                     Scalars scalars = {}, bool is_hard = false) {
         std::vector<int> added(detail::part_count(ids, counts));
-        add(type, ids, counts, weights, scalars, added);
+        add(type, ids, counts, weights, scalars, is_hard, added);
         return added;
     }
 
@@ -159,6 +161,85 @@ public:
     bool is_constraint(int id) const { return detail::check_number(shapeop_isConstraint(handle(), id), handle()) != 0; }
     bool is_degenerate(int id) const { return detail::check_number(shapeop_isDegenerate(handle(), id), handle()) != 0; }
 
+    // References: shapes that "OnCurve" and "OnMesh" constraints name in their scalar by their id. Their points are none
+    // of the solver.
+
+    int add_reference_polyline(Numbers points, bool is_closed = false) {
+        return detail::check_number(
+            shapeop_addReferencePolyline(handle(), points.data(), points.point_count("points"), is_closed), handle());
+    }
+
+    /// `triangles`: 3 indices of points each.
+    int add_reference_mesh(Numbers points, Indices triangles) {
+        return detail::check_number(shapeop_addReferenceMesh(handle(), points.data(), points.point_count("points"),
+                                                             triangles.data(), triangles.triangle_count("triangles")),
+                                    handle());
+    }
+
+    int reference_count() const { return detail::check_number(shapeop_referenceCount(handle()), handle()); }
+
+    // Exploration: hard constraints are met exactly, handles are dragged, and everything else changes as little and as
+    // fairly as that allows.
+
+    /// Hard: to be met exactly; the weight is then the priority where not everything can be met.
+    void set_hard(int id, bool is_hard = true) { detail::check(shapeop_setHard(handle(), id, is_hard), handle()); }
+    bool is_hard(int id) const { return detail::check_number(shapeop_isHard(handle(), id), handle()) != 0; }
+
+    /// Makes a point a handle, drawn to `target`, 3 coordinates, or moves its target.
+    void set_handle(int point, Numbers target) {
+        detail::check(shapeop_setHandle(handle(), point, three(target, "target")), handle());
+    }
+
+    void release_handle(int point) { detail::check(shapeop_releaseHandle(handle(), point), handle()); }
+
+    void set_objective(const Objective &objective) {
+        detail::check(shapeop_setObjective(handle(), &objective), handle());
+    }
+
+    /// What the fairness term measures: faces or polylines as index lists behind each other, cut by `counts`: one
+    /// number for all, or one for each.
+    void set_fairness(shapeop_fairness kind, Indices indices, Indices counts) {
+        std::vector<int> each(counts.data(), counts.data() + counts.size());
+        if (each.size() == 1) {
+            each.assign(detail::part_count(indices, counts), each.front());
+        }
+        detail::check(shapeop_setFairness(handle(), kind, indices.data(), indices.length("indices"), each.data(),
+                                          Indices(each).length("counts")),
+                      handle());
+    }
+
+    /// What the last exploration found; refused if there was none.
+    Exploration exploration() const {
+        Exploration found;
+        detail::check(shapeop_getExploration(handle(), &found), handle());
+        return found;
+    }
+
+    /// The hard constraints in the contradiction that the last exploration found; empty if there is none. Without them
+    /// the others can be met.
+    std::vector<int> conflicts() const {
+        const int count = detail::check_number(shapeop_getConflicts(handle(), nullptr, 0), handle());
+        std::vector<int> ids(static_cast<std::size_t>(count));
+        detail::check_number(shapeop_getConflicts(handle(), ids.data(), count), handle());
+        return ids;
+    }
+
+    /// How the solution answers a change of each weight; refused unless the last solve ended in one.
+    Sensitivities sensitivities() {
+        const int count = detail::check_number(shapeop_weightClassCount(handle()), handle());
+        const auto classes = static_cast<std::size_t>(count);
+        const int points = point_count();
+        Sensitivities found;
+        found.points.resize(3 * classes * static_cast<std::size_t>(points));
+        found.squares.resize(classes * classes);
+        detail::check(shapeop_getSensitivities(handle(), found.points.data(), points, found.squares.data(), count),
+                      handle());
+        for (int index = 0; index < count; ++index) {
+            found.classes.emplace_back(shapeop_weightClassName(handle(), index));
+        }
+        return found;
+    }
+
     // Forces, of 3 components.
 
     int add_gravity_force(Numbers force) {
@@ -172,6 +253,28 @@ public:
     void edit_vertex_force(int id, Numbers force, int point) {
         shapeop_editVertexForce(handle(), id, components(force), point);
         detail::check_void(handle());
+    }
+
+    // Forces on faces, which follow the points. `faces` are point indices behind each other; `counts` says how many belong
+    // to each: one number for all, or one for each.
+
+    /// `pressure`: force per area, along the normals.
+    int add_pressure(Indices faces, Indices counts, double pressure) {
+        return detail::check_number(shapeop_addPressure(handle(), faces.data(), faces.length("faces"), counts.data(),
+                                                        counts.length("counts"), pressure),
+                                    handle());
+    }
+
+    /// A force of this length on every corner, along the normal there.
+    int add_normal_force(Indices faces, Indices counts, double magnitude) {
+        return detail::check_number(shapeop_addNormalForce(handle(), faces.data(), faces.length("faces"), counts.data(),
+                                                           counts.length("counts"), magnitude),
+                                    handle());
+    }
+
+    /// Replaces a pressure, or the length of a normal force.
+    void edit_force_magnitude(int id, double magnitude) {
+        detail::check(shapeop_editForceMagnitude(handle(), id, magnitude), handle());
     }
 
     void remove_force(int id) { detail::check(shapeop_removeForce(handle(), id), handle()); }
@@ -274,29 +377,33 @@ private:
         }
     };
 
-    void add(const std::string &type, Indices ids, Indices counts, Numbers weights, Scalars scalars, Span<int> added) {
+    void add(const std::string &type, Indices ids, Indices counts, Numbers weights, Scalars scalars, bool is_hard,
+             Span<int> added) {
         const Numbers numbers = scalars.numbers();
         const int sets = scalars.set_count(added.length("constraints"));
         detail::check(shapeop_addConstraints(handle(), detail::c_text(type, "type"), ids.data(), ids.length("ids"),
                                              counts.data(), counts.length("counts"), weights.data(),
                                              weights.length("weights"), numbers.data(), numbers.length("scalars"), sets,
-                                             0, added.data()),
+                                             is_hard ? SHAPEOP_HARD : 0, added.data()),
                       handle());
     }
 
     int add_one(const std::string &type, Indices ids, double weight, Scalars scalars) {
         int id = 0;
-        add(type, ids, {ids.length("ids")}, {weight}, scalars, {&id, 1});
+        add(type, ids, {ids.length("ids")}, {weight}, scalars, false, {&id, 1});
         return id;
     }
 
-    static double *components(Numbers force) {
-        if (force.size() != 3) {
-            throw Error(SO_INVALID_ARGUMENT_LENGTH, "force: expected 3 numbers, found " + std::to_string(force.size()));
+    static const double *three(Numbers numbers, const char *name) {
+        if (numbers.size() != 3) {
+            throw Error(SO_INVALID_ARGUMENT_LENGTH,
+                        std::string(name) + ": expected 3 numbers, found " + std::to_string(numbers.size()));
         }
-        // The C functions do not change them.
-        return const_cast<double *>(force.data());
+        return numbers.data();
     }
+
+    // The C functions do not change them.
+    static double *components(Numbers force) { return const_cast<double *>(three(force, "force")); }
 
     void check_flag(int is_refused) {
         if (is_refused != 0) {

@@ -50,6 +50,15 @@ public:
         return Span(first_, size_ / 3).length(name);
     }
 
+    /// The number of triangles: the length is 3 times that.
+    int triangle_count(const char *name) const {
+        if (size_ % 3 != 0) {
+            throw Error(SO_INVALID_ARGUMENT_LENGTH, std::string(name) + ": expected 3 indices of each triangle, found " +
+                                                        std::to_string(size_));
+        }
+        return Span(first_, size_ / 3).length(name);
+    }
+
 private:
     T *first_ = nullptr;
     std::size_t size_ = 0;
