@@ -10,12 +10,18 @@ namespace ShapeOp
         /// <param name="indices">Point indices.</param>
         /// <param name="weight">Finite, at least 0.</param>
         /// <param name="scalars">As its type states them; null: the type's defaults.</param>
+        /// <param name="hard">Whether it is to be met exactly; static mode, see <see cref="SetHard"/>.</param>
         /// <returns>Its id. Ids count up from 0 and are never reused.</returns>
-        public int Add(string type, IEnumerable<int> indices, double weight = 1, IEnumerable<double> scalars = null)
+        public int Add(
+            string type,
+            IEnumerable<int> indices,
+            double weight = 1,
+            IEnumerable<double> scalars = null,
+            bool hard = false)
         {
             int[] ids = Flat.Array(indices, nameof(indices));
             double[] set = scalars == null ? null : Flat.Array(scalars, nameof(scalars));
-            return AddLists(type, ids, new[] { ids.Length }, 1, new[] { weight }, set, set == null ? 0 : 1)[0];
+            return AddLists(type, ids, new[] { ids.Length }, 1, new[] { weight }, set, set == null ? 0 : 1, hard)[0];
         }
 
         /// <summary>
@@ -25,14 +31,20 @@ namespace ShapeOp
         /// <param name="indices">The point indices of each, such as the faces of a mesh.</param>
         /// <param name="weight">Finite, at least 0.</param>
         /// <param name="scalars">As the type states them; null: the type's defaults.</param>
+        /// <param name="hard">Whether they are to be met exactly; static mode, see <see cref="SetHard"/>.</param>
         /// <returns>The id of each.</returns>
         public int[] AddMany(
-            string type, IEnumerable<IReadOnlyList<int>> indices, double weight = 1, IEnumerable<double> scalars = null)
+            string type,
+            IEnumerable<IReadOnlyList<int>> indices,
+            double weight = 1,
+            IEnumerable<double> scalars = null,
+            bool hard = false)
         {
             double[] set = scalars == null ? null : Flat.Array(scalars, nameof(scalars));
             var lists = new Lists<int>(indices, nameof(indices));
             return AddLists(
-                type, lists.Values, lists.Counts, lists.Counts.Length, new[] { weight }, set, set == null ? 0 : 1);
+                type, lists.Values, lists.Counts, lists.Counts.Length, new[] { weight }, set, set == null ? 0 : 1,
+                hard);
         }
 
         /// <summary>Adds many constraints of one type, all or none.</summary>
@@ -42,30 +54,34 @@ namespace ShapeOp
         /// <param name="scalars">
         /// One list for all or one for each, as the type states them; null: the type's defaults.
         /// </param>
+        /// <param name="hard">Whether they are to be met exactly; static mode, see <see cref="SetHard"/>.</param>
         /// <returns>The id of each.</returns>
         public int[] AddMany(
             string type,
             IEnumerable<IReadOnlyList<int>> indices,
             IEnumerable<double> weights,
-            IEnumerable<IReadOnlyList<double>> scalars = null)
+            IEnumerable<IReadOnlyList<double>> scalars = null,
+            bool hard = false)
         {
             var lists = new Lists<int>(indices, nameof(indices));
             double[] each = Flat.Array(weights, nameof(weights));
             Lists<double> sets = scalars == null ? null : new Lists<double>(scalars, nameof(scalars));
             sets?.RequireLikeLengths(ConstraintType.Find(type), lists.Counts, nameof(scalars));
             return AddLists(
-                type, lists.Values, lists.Counts, lists.Counts.Length, each, sets?.Values, sets?.Counts.Length ?? 0);
+                type, lists.Values, lists.Counts, lists.Counts.Length, each, sets?.Values, sets?.Counts.Length ?? 0,
+                hard);
         }
 
         int[] AddLists(
-            string type, int[] indices, int[] counts, int number, double[] weights, double[] scalars, int setCount)
+            string type, int[] indices, int[] counts, int number, double[] weights, double[] scalars, int setCount,
+            bool hard)
         {
             var ids = new int[number];
             byte[] name = Text.ToLibrary(type, nameof(type));
             handle.Check(
                 Native.shapeop_addConstraints(
                     Usable, name, indices, indices.Length, counts, counts.Length, weights, weights.Length, scalars,
-                    scalars?.Length ?? 0, setCount, 0, ids));
+                    scalars?.Length ?? 0, setCount, hard ? Hard : 0, ids));
             return ids;
         }
 

@@ -21,6 +21,9 @@ static partial class Tests
                 True(ReferenceEquals(type, ConstraintType.Find(type.Name)), $"{type.Name} is not found");
                 using (Solver solver = SolverWith(points))
                 {
+                    // Types that refer to a shape take the first of its kind unless they are told.
+                    solver.AddReferencePolyline(points);
+                    solver.AddReferenceMesh(points, new[] { Indices(0, 1, 2) });
                     solver.Add(type.Name, Enumerable.Range(0, type.LeastIndices));
                     if (type.GreatestIndices == null) continue;
                     Refusals.Refused(

@@ -30,6 +30,7 @@ static class Refusals
         ListsOfThem();
         Numbers();
         Texts();
+        Exploring();
         Disposed();
         Busy();
     }
@@ -299,6 +300,64 @@ static class Refusals
         });
     }
 
+    static void Exploring()
+    {
+        Truth("what cannot be explored is named and changes nothing", () =>
+        {
+            using (Solver solver = BentSquare())
+            {
+                var triangle = new[] { Indices(0, 1, 2) };
+                Refused(ErrorCode.UnmatchingConstraintId, "77", () => solver.SetHard(77));
+                Refused(
+                    ErrorCode.InvalidValue, "cannot be hard", () => solver.Add("EdgeStrain", Indices(0, 0), hard: true));
+                Refused(ErrorCode.IndexOutOfRange, "4 is out of range for 4 points", () => solver.SetHandle(4, 0, 0, 0));
+                Refused(ErrorCode.InvalidValue, "target", () => solver.SetHandle(0, 0, double.NaN, 0));
+                Refused(ErrorCode.InvalidValue, "point 2 is no handle", () => solver.ReleaseHandle(2));
+                Refused(ErrorCode.NullPointer, "objective is null", () => solver.SetObjective(null));
+                Refused(
+                    ErrorCode.InvalidValue, "handle_weight: expected a number above 0, found 0",
+                    () => solver.SetObjective(new Objective { HandleWeight = 0 }));
+                Refused(
+                    ErrorCode.InvalidValue, "tolerance: expected at least 1e-14",
+                    () => solver.SetObjective(new Objective { Tolerance = 0 }));
+                Refused(ErrorCode.NullPointer, "lists is null", () => solver.SetFairness(Fairness.Laplacian, null));
+                Refused(
+                    ErrorCode.NullPointer, "lists[1] is null",
+                    () => solver.SetFairness(Fairness.Laplacian, new[] { Indices(0, 1), null }));
+                Refused(
+                    ErrorCode.IndexOutOfRange, "indices[1]: 4",
+                    () => solver.SetFairness(Fairness.Laplacian, new[] { Indices(0, 4) }));
+                Refused(ErrorCode.InvalidValue, "kind", () => solver.SetFairness((Fairness)7, triangle));
+                Refused(ErrorCode.NotInitialised, "no exploration yet", () => solver.Exploration.ToString());
+                Refused(ErrorCode.NotInitialised, "solve", () => solver.GetSensitivities());
+                Equal(0, solver.Conflicts.Length);
+                Refused(
+                    ErrorCode.InvalidArgumentLength, "points: expected at least 2, found 1",
+                    () => solver.AddReferencePolyline(new double[3]));
+                Refused(
+                    ErrorCode.InvalidArgumentLength, "triangles[1]: expected 3 indices, found 4",
+                    () => solver.AddReferenceMesh(solver.Points, new[] { Indices(0, 1, 2), Indices(0, 1, 2, 3) }));
+                Refused(
+                    ErrorCode.IndexOutOfRange, "triangles[0][2]: 4",
+                    () => solver.AddReferenceMesh(solver.Points, new[] { Indices(0, 1, 4) }));
+                Refused(
+                    ErrorCode.IndexOutOfRange, "3 is out of range for 0 references",
+                    () => solver.Add("OnCurve", Indices(0), 1, new double[] { 3 }));
+                Refused(ErrorCode.InvalidValue, "NaN", () => solver.AddPressure(triangle, double.NaN));
+                Refused(
+                    ErrorCode.InvalidArgumentLength, "faces[0]: expected a face of at least 3 corners, found 2",
+                    () => solver.AddNormalForce(new[] { Indices(0, 1) }, 1));
+                Refused(ErrorCode.UnmatchingForceId, "0", () => solver.EditForceMagnitude(0, 1));
+                Equal(1, solver.ConstraintCount);
+                Equal(0, solver.ReferenceCount);
+                Equal(0, solver.ForceCount);
+                True(!solver.IsHard(0), "it became hard");
+                solver.InitDynamic(1, 1, 1);
+                Refused(ErrorCode.InvalidValue, "static mode", () => solver.SetHard(0));
+            }
+        });
+    }
+
     static void Disposed()
     {
         Truth("a solver that was disposed of says so", () =>
@@ -317,6 +376,14 @@ static class Refusals
                 () => solver.Solve(1),
                 () => solver.SolveUntil(),
                 () => solver.SetProblem("{}"),
+                () => solver.SetHard(0),
+                () => solver.SetHandle(0, 0, 0, 0),
+                () => solver.SetObjective(new Objective()),
+                () => solver.GetSensitivities(),
+                () => solver.AddPressure(new[] { Indices(0, 1, 2) }, 1),
+                () => solver.AddReferencePolyline(new double[6]),
+                () => True(solver.Conflicts == null, "it has conflicts"),
+                () => True(solver.Exploration == null, "it has explored"),
                 () => True(solver.PointCount < 0, "it has points"),
                 () => True(solver.Energy < 0, "it has an energy"),
                 () => True(solver.Violations == null, "it has violations"),

@@ -22,6 +22,7 @@ static partial class Tests
         Dynamics();
         ConstraintsAndForces();
         SolvingUntil();
+        Exploring();
         Registry();
         Problems();
         Lifetimes();
