@@ -268,11 +268,56 @@ public class Mistakes {
             shapeopJava.shapeop_version());
     }
 
+    static void exploring() {
+        // With closeness alone a plane that is met exactly is the best-fit plane: z = 0.
+        SWIGTYPE_p_ShapeOpSolver op = square();
+        int plane = shapeopJava.shapeop_addConstraint(op, "Plane", ints(0, 1, 2, 3), 4, 1);
+        accepted("a constraint is made hard", op, shapeopJava.shapeop_setHard(op, plane, 1) == shapeop_err.SO_SUCCESS);
+        shapeop_objective objective = new shapeop_objective();
+        check("an objective begins with the defaults", objective.getHandle_weight() == 100, objective.getHandle_weight());
+        objective.setFairness_weight(0);
+        shapeopJava.shapeop_setObjective(op, objective);
+        shapeopJava.shapeop_init(op);
+        shapeop_solve_report report = new shapeop_solve_report();
+        shapeop_solve_options options = new shapeop_solve_options();
+        raises("iterations at most below 0 are refused", IllegalArgumentException.class, () -> {
+            options.setMax_iterations(-1);
+            return null;
+        }, "max_iterations");
+        accepted("it solves", op, shapeopJava.shapeop_solveUntil(op, options, report) == shapeop_err.SO_SUCCESS);
+        check("and converges", report.getOutcome() == shapeop_outcome.SO_OUTCOME_CONVERGED, report.getOutcome());
+        double[] flat = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+        check("a hard plane with closeness alone is the best-fit plane", areAt(op, flat, 1e-11), null);
+        shapeop_exploration found = new shapeop_exploration();
+        shapeopJava.shapeop_getExploration(op, found);
+        check("it is a solution", found.getIs_solution() == 1 && found.getWorst_constraint() == plane, null);
+        check("there is no contradiction", shapeopJava.shapeop_getConflicts(op, null, 0) == 0, null);
+        check("weights have names", shapeopJava.shapeop_weightClassName(op, 1).equals("closeness"), null);
+        doubleArray squares = new doubleArray(9);
+        accepted("sensitivities are told", op,
+            shapeopJava.shapeop_getSensitivities(op, new doubleArray(36), 4, squares, 3) == shapeop_err.SO_SUCCESS);
+        raises("room for fewer moves than there are is refused", IllegalArgumentException.class,
+            () -> shapeopJava.shapeop_getSensitivities(op, new doubleArray(35), 4, squares, 3), "points", "36", "35");
+        raises("a target of two numbers is refused", IllegalArgumentException.class,
+            () -> shapeopJava.shapeop_setHandle(op, 0, new doubleArray(2)), "target", "3", "2");
+        refused("what is no handle is not let go", op,
+            shapeopJava.shapeop_releaseHandle(op, 0) == shapeop_err.SO_INVALID_VALUE, "point 0 is no handle");
+        int mesh = shapeopJava.shapeop_addReferenceMesh(op, doubles(SQUARE), 4, ints(0, 1, 2), 1);
+        check("a reference has an id", mesh == 0 && shapeopJava.shapeop_referenceCount(op) == 1, mesh);
+        raises("indices that are fewer than said are no triangles", IllegalArgumentException.class,
+            () -> shapeopJava.shapeop_addReferenceMesh(op, doubles(SQUARE), 4, ints(0, 1, 2), 2), "triangles", "6", "3");
+        int pressure = shapeopJava.shapeop_addPressure(op, ints(0, 1, 2, 3), 4, ints(4), 1, 1);
+        accepted("a pressure is edited", op,
+            shapeopJava.shapeop_editForceMagnitude(op, pressure, 2) == shapeop_err.SO_SUCCESS);
+        shapeopJava.shapeop_delete(op);
+    }
+
     public static void main(String[] unused) throws InterruptedException {
         arrays();
         arguments();
         constraintsAndForces();
         solvers();
+        exploring();
         threads();
         collections();
         texts();

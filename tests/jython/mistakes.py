@@ -11,6 +11,9 @@ from java.lang import IllegalArgumentException, IndexOutOfBoundsException
 import doubleArray
 import intArray
 import shapeop_err
+import shapeop_objective
+import shapeop_outcome
+import shapeop_solve_report
 from shapeopJava import *
 
 passed = 0
@@ -139,7 +142,25 @@ def threads():
     shapeop_delete(op)
 
 
-for part in (types_and_arrays, calls, threads):
+def exploring():
+    op = shapeop_create()
+    shapeop_setPoints(op, doubles(*SQUARE), 4)
+    shapeop_setHard(op, shapeop_addConstraint(op, "Plane", ints(0, 1, 2, 3), 4, 1.0), 1)
+    objective = shapeop_objective()
+    objective.setFairness_weight(0)
+    shapeop_setObjective(op, objective)
+    shapeop_init(op)
+    report = shapeop_solve_report()
+    shapeop_solveUntil(op, None, report)
+    check("it converges", report.outcome == shapeop_outcome.SO_OUTCOME_CONVERGED, report.outcome)
+    points = doubleArray(12)
+    shapeop_getPoints(op, points, 4)
+    heights = [points.getitem(i) for i in (2, 5, 8, 11)]
+    check("a hard plane with closeness alone is the best-fit plane", max(abs(z) for z in heights) < 1e-11, heights)
+    shapeop_delete(op)
+
+
+for part in (types_and_arrays, calls, exploring, threads):
     part()
 print "%d passed, %d failed" % (passed, failed)
 sys.exit(failed > 0)

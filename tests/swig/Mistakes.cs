@@ -236,12 +236,58 @@ public static class Mistakes
         Check("the library has a version", version.Split('.').Length == 3, version);
     }
 
+    static void Exploring()
+    {
+        // With closeness alone a plane that is met exactly is the best-fit plane: z = 0.
+        var op = Square();
+        int plane = shapeopCSharp.shapeop_addConstraint(op, "Plane", Ints(0, 1, 2, 3), 4, 1);
+        Accepted("a constraint is made hard", op, shapeopCSharp.shapeop_setHard(op, plane, 1) == shapeop_err.SO_SUCCESS);
+        var objective = new shapeop_objective();
+        Check("an objective begins with the defaults", objective.handle_weight == 100, objective.handle_weight);
+        objective.fairness_weight = 0;
+        shapeopCSharp.shapeop_setObjective(op, objective);
+        shapeopCSharp.shapeop_init(op);
+        var report = new shapeop_solve_report();
+        shapeop_err error = shapeopCSharp.shapeop_solveUntil(op, new shapeop_solve_options(), report);
+        Accepted("it solves", op, error == shapeop_err.SO_SUCCESS);
+        Check("and converges", report.outcome == shapeop_outcome.SO_OUTCOME_CONVERGED, report.outcome);
+        double[] found = PointsOf(op, 4);
+        bool isThere = found.Select((x, i) => Math.Abs(x - (i % 3 == 2 ? 0 : square[i]))).All(apart => apart < 1e-11);
+        Check("a hard plane with closeness alone is the best-fit plane", isThere, string.Join(" ", found));
+        var exploration = new shapeop_exploration();
+        shapeopCSharp.shapeop_getExploration(op, exploration);
+        Check("it is a solution", exploration.is_solution == 1 && exploration.worst_constraint == plane);
+        Check("there is no contradiction", shapeopCSharp.shapeop_getConflicts(op, null, 0) == 0);
+        Check("weights have names", shapeopCSharp.shapeop_weightClassName(op, 1) == "closeness");
+        var squares = new doubleArray(9);
+        error = shapeopCSharp.shapeop_getSensitivities(op, new doubleArray(36), 4, squares, 3);
+        Accepted("sensitivities are told", op, error == shapeop_err.SO_SUCCESS);
+        Raises<ArgumentOutOfRangeException>(
+            "room for fewer moves than there are is refused",
+            () => shapeopCSharp.shapeop_getSensitivities(op, new doubleArray(35), 4, squares, 3), "points", "36", "35");
+        Raises<ArgumentOutOfRangeException>(
+            "a target of two numbers is refused", () => shapeopCSharp.shapeop_setHandle(op, 0, new doubleArray(2)),
+            "target", "3", "2");
+        error = shapeopCSharp.shapeop_releaseHandle(op, 0);
+        Refused("what is no handle is not let go", op, error == shapeop_err.SO_INVALID_VALUE, "point 0 is no handle");
+        int mesh = shapeopCSharp.shapeop_addReferenceMesh(op, Doubles(square), 4, Ints(0, 1, 2), 1);
+        Check("a reference has an id", mesh == 0 && shapeopCSharp.shapeop_referenceCount(op) == 1, mesh);
+        Raises<ArgumentOutOfRangeException>(
+            "indices that are fewer than said are no triangles",
+            () => shapeopCSharp.shapeop_addReferenceMesh(op, Doubles(square), 4, Ints(0, 1, 2), 2), "triangles", "6", "3");
+        int pressure = shapeopCSharp.shapeop_addPressure(op, Ints(0, 1, 2, 3), 4, Ints(4), 1, 1);
+        error = shapeopCSharp.shapeop_editForceMagnitude(op, pressure, 2);
+        Accepted("a pressure is edited", op, error == shapeop_err.SO_SUCCESS);
+        shapeopCSharp.shapeop_delete(op);
+    }
+
     public static int Main()
     {
         Arrays();
         Arguments();
         ConstraintsAndForces();
         Solvers();
+        Exploring();
         Threads();
         Texts();
         Console.WriteLine(passed + " passed, " + failed + " failed");

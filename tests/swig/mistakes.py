@@ -164,6 +164,106 @@ def solvers():
     shapeop_delete(other)
 
 
+def exploring():
+    # With closeness alone a plane that is met exactly is the best-fit plane: z = 0.
+    op = square()
+    plane = shapeop_addConstraint(op, "Plane", ints(0, 1, 2, 3), 4, 1.0)
+    accepted("a constraint is made hard", op, shapeop_setHard(op, plane, 1) == SO_SUCCESS)
+    check("and knows it", shapeop_isHard(op, plane) == 1 and shapeop_isHard(op, 7) == 0)
+    objective = shapeop_objective()
+    check("an objective begins with the defaults", objective.handle_weight == 100, objective.handle_weight)
+    objective.fairness_weight = 0
+    accepted("weights are set", op, shapeop_setObjective(op, objective) == SO_SUCCESS)
+    found = shapeop_exploration()
+    refused("nothing is found before it was looked for", op,
+            shapeop_getExploration(op, found) == SO_NOT_INITIALISED, ["no exploration yet"])
+    report = shapeop_solve_report()
+    shapeop_init(op)
+    accepted("it solves", op, shapeop_solveUntil(op, shapeop_solve_options(), report) == SO_SUCCESS)
+    check("and converges", report.outcome == SO_OUTCOME_CONVERGED and report.iterations > 0, report.outcome)
+    expected = [0 if i % 3 == 2 else x for i, x in enumerate(SQUARE)]
+    apart = max(abs(a - b) for a, b in zip(points_of(op, 4), expected))
+    check("a hard plane with closeness alone is the best-fit plane", apart < 1e-11, apart)
+    accepted("what was found is told", op, shapeop_getExploration(op, found) == SO_SUCCESS)
+    check("it is a solution", found.is_solution == 1 and found.worst_constraint == plane, found.largest_violation)
+    check("closeness is half of 0.1 times 4 times 0.1 squared", abs(found.closeness_term - 0.002) < 1e-12)
+    check("there is no contradiction", shapeop_getConflicts(op, None, 0) == 0)
+
+    count = shapeop_weightClassCount(op)
+    names = [shapeop_weightClassName(op, i) for i in range(count)]
+    check("weights have names", names == ["handles", "closeness", "fairness"], names)
+    moves, squares = doubleArray(3 * 4 * count), doubleArray(count * count)
+    accepted("sensitivities are told", op, shapeop_getSensitivities(op, moves, 4, squares, count) == SO_SUCCESS)
+    check("no weight moves this solution", max(abs(x) for x in moves) < 1e-9, max(abs(x) for x in moves))
+    raises("room for fewer moves than there are is refused", ValueError, ["points", "36", "35"],
+           shapeop_getSensitivities, op, doubleArray(35), 4, squares, count)
+    raises("room for fewer squares than there are is refused", ValueError, ["squares", "9", "8"],
+           shapeop_getSensitivities, op, moves, 4, doubleArray(8), count)
+    raises("counts beyond all memory are refused", ValueError, ["too large"],
+           shapeop_getSensitivities, op, moves, 2**30, squares, 2**30)
+
+    accepted("a point becomes a handle", op, shapeop_setHandle(op, 0, doubles(0, 0, 1)) == SO_SUCCESS)
+    accepted("fairness is set", op, shapeop_setFairness(
+        op, SO_FAIRNESS_LAPLACIAN, ints(0, 1, 2, 3), 4, ints(4), 1) == SO_SUCCESS)
+    shapeop_solveUntil(op, None, None)
+    check("which is drawn", points_of(op, 4)[2] > 0.1, points_of(op, 4))
+    accepted("and is let go", op, shapeop_releaseHandle(op, 0) == SO_SUCCESS)
+    refused("once", op, shapeop_releaseHandle(op, 0) == SO_INVALID_VALUE, ["point 0 is no handle"])
+    refused("a point that is none is no handle", op,
+            shapeop_setHandle(op, 4, doubles(0, 0, 0)) == SO_INDEX_OUT_OF_RANGE, ["4", "4 points"])
+    raises("a target of two numbers is refused", ValueError, ["target", "3", "2"],
+           shapeop_setHandle, op, 0, doubleArray(2))
+    refused("no objective is refused", op, shapeop_setObjective(op, None) == SO_NULL_POINTER, ["objective", "null"])
+    raises("indices that are fewer than said are no faces", ValueError, ["indices", "4", "3"],
+           shapeop_setFairness, op, SO_FAIRNESS_LAPLACIAN, intArray(3), 4, ints(4), 1)
+    raises("nor counts", ValueError, ["counts", "2", "1"],
+           shapeop_setFairness, op, SO_FAIRNESS_LAPLACIAN, ints(0, 1, 2, 3), 4, ints(4), 2)
+    shapeop_delete(op)
+
+    op = square()
+    curve = shapeop_addReferencePolyline(op, doubles(*SQUARE), 4, 1)
+    mesh = shapeop_addReferenceMesh(op, doubles(*SQUARE), 4, ints(0, 1, 2), 1)
+    check("references have ids", (curve, mesh, shapeop_referenceCount(op)) == (0, 1, 2), (curve, mesh))
+    raises("points that are fewer than said are no curve", ValueError, ["points", "15", "12"],
+           shapeop_addReferencePolyline, op, doubles(*SQUARE), 5, 0)
+    raises("indices that are fewer than said are no triangles", ValueError, ["triangles", "6", "3"],
+           shapeop_addReferenceMesh, op, doubles(*SQUARE), 4, ints(0, 1, 2), 2)
+    for i in range(4):
+        shapeop_addConstraint(op, "Closeness", ints(i), 1, 2.0)
+    flat = [0 if i % 3 == 2 else x for i, x in enumerate(SQUARE)]
+    pressure = shapeop_addPressure(op, ints(0, 1, 2, 3), 4, ints(4), 1, 8.0)
+    normal = shapeop_addNormalForce(op, ints(0, 1, 2, 3), 4, ints(4), 1, 0.0)
+    accepted("forces on faces have ids", op, (pressure, normal) == (0, 1))
+    accepted("and are edited", op, shapeop_editForceMagnitude(op, pressure, 4.0) == SO_SUCCESS)
+    shapeop_init(op)
+    shapeop_setPoints(op, doubles(*flat), 4)
+    shapeop_solve(op, 1)
+    # A quarter of 4 over 2, above where they are held.
+    check("a pressure moves a held point by its share over the weight", abs(points_of(op, 4)[2] - 0.6) < 1e-12)
+    violations, energy = doubleArray(4), doubleArray(1)
+    accepted("violations are told", op, shapeop_getViolations(op, violations, 4) == SO_SUCCESS)
+    check("and are the distances", abs(violations[0] - 0.5) < 1e-12, violations[0])
+    accepted("energy is told", op, shapeop_energy(op, energy) == SO_SUCCESS)
+    accepted("a force is removed", op, shapeop_removeForce(op, normal) == SO_SUCCESS)
+    refused("once", op, shapeop_editForceMagnitude(op, normal, 1.0) == SO_UNMATCHING_FORCE_ID, ["1"])
+    shapeop_delete(op)
+
+    op = shapeop_create()
+    shapeop_setPoints(op, doubles(*flat), 4)
+    for a, b, length, weight in ((0, 1, 1.0, 2.0), (1, 2, 1.0, 2.0), (2, 3, 1.0, 2.0), (3, 0, 1.0, 2.0), (0, 1, 3.0, 1.0)):
+        edge = shapeop_addConstraint(op, "EdgeLength", ints(a, b), 2, weight)
+        shapeop_editConstraint(op, "EdgeLength", edge, doubles(length, length), 2)
+        shapeop_setHard(op, edge, 1)
+    shapeop_setFairness(op, SO_FAIRNESS_LAPLACIAN, ints(0, 1, 2, 3), 4, ints(4), 1)
+    shapeop_init(op)
+    accepted("a contradiction is no refusal", op, shapeop_solveUntil(op, None, report) == SO_SUCCESS)
+    ids = intArray(1)
+    check("two lengths of one edge cannot be met", report.outcome == SO_OUTCOME_INFEASIBLE, report.outcome)
+    check("the one of less priority is named", shapeop_getConflicts(op, ids, 1) == 1 and ids[0] == edge, ids[0])
+    raises("room for fewer ids than said is refused", ValueError, ["ids", "2", "1"], shapeop_getConflicts, op, ids, 2)
+    shapeop_delete(op)
+
+
 def grid(size):
     op = shapeop_create()
     shapeop_setPoints(op, doubles(*[x for j in range(size) for i in range(size) for x in (i, j, i * j % 3)]), size**2)
@@ -211,7 +311,7 @@ def texts():
     shapeop_delete(op)
 
 
-for part in (arrays, arguments, constraints_and_forces, solvers, threads, texts):
+for part in (arrays, arguments, constraints_and_forces, solvers, exploring, threads, texts):
     part()
 print("%d passed, %d failed" % (passed, failed))
 sys.exit(failed > 0)
