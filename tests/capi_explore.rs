@@ -107,9 +107,8 @@ fn a_handle_under_hard_planes_leads_where_the_rust_api_leads() {
     assert_eq!(names, ["handles", "closeness", "fairness", "EdgeLength"]);
     let (mut moves, mut squares) = (vec![f64::NAN; 4 * flat.len()], vec![f64::NAN; 16]);
     // SAFETY: live slices of these lengths.
-    let code = unsafe {
-        shapeop_getSensitivities(abi.0, moves.as_mut_ptr(), (N * N) as c_int, squares.as_mut_ptr(), 4)
-    };
+    let code =
+        unsafe { shapeop_getSensitivities(abi.0, moves.as_mut_ptr(), (N * N) as c_int, squares.as_mut_ptr(), 4) };
     assert_eq!(code, SO_SUCCESS, "{}", abi.message());
     let known = solver.sensitivities().unwrap();
     assert_eq!(moves, known.points.iter().flatten().flat_map(|step| step.to_array()).collect::<Vec<_>>());
@@ -168,7 +167,8 @@ fn what_does_not_fit_is_refused_by_name() {
     let code = unsafe { shapeop_getSensitivities(abi.0, ptr::null_mut(), 3, ptr::null_mut(), 5) };
     refused(code, SO_NOT_INITIALISED, "solve until it is converged");
     assert!(shapeop_weightClassName(abi.0, 99).is_null() && abi.message().contains("99 is out of range"));
-    let hard = Many { type_name: "EdgeStrain", ids: &[0, 1, 2, 2], counts: &[2], flags: SHAPEOP_HARD, ..Many::default() };
+    let hard =
+        Many { type_name: "EdgeStrain", ids: &[0, 1, 2, 2], counts: &[2], flags: SHAPEOP_HARD, ..Many::default() };
     let before = shapeop_constraintCount(abi.0);
     refused(abi.add_many(&hard).0, SO_INVALID_VALUE, "cannot be hard");
     assert_eq!(shapeop_constraintCount(abi.0), before, "all or none");

@@ -39,6 +39,15 @@ const OF_AN_ANSWER: Updates = Updates { most: 60, enough: 1e-10 };
 /// and succeeds earliest: stiffer, the steps follow the curved sets in small pieces.
 const STIFFER: f64 = 5.0;
 
+/// Where a step leaves more than this part of the distance from the constraints, and the gradient is the smaller residual, multipliers
+/// come too slowly, and the penalty is raised: constraints that nearly depend on each other need that.
+const SLOW: f64 = 0.1;
+const STIFFENING: f64 = 5.0;
+const STIFFEST: f64 = 100.0;
+
+/// The gradient of the augmented Lagrangian over the distance from the constraints, both relative, below which multipliers are updated.
+const MINIMISED: f64 = 0.3;
+
 /// Entries of the constraints' blocks from which on no Newton step is made: the factor would be out of proportion.
 pub(super) const MOST_ENTRIES: usize = 60_000_000;
 
@@ -96,8 +105,9 @@ pub(super) struct System {
 /// What a finish led to.
 pub(super) struct Finished {
     pub(super) points: Vec<DVec3>,
-    /// `u` by rows; the multiplier is the penalty times it.
+    /// `u` by rows; the multiplier is `penalty` times it.
     pub(super) u: Vec<DVec3>,
+    pub(super) penalty: f64,
     pub(super) residuals: Residuals,
     pub(super) steps: u32,
     pub(super) factorisations: u32,
@@ -122,14 +132,36 @@ impl Finish<'_> {
     ) -> Result<Finished> {
         let mut state = self.state(points.to_vec(), u.to_vec());
         let (mut steps, mut factorisations) = (0, 0);
+        let stiffest = STIFFEST * self.penalty;
         while steps < STEPS && !state.residuals.are_within(tolerance, self.size) && goes_on() {
             let Some(system) = self.system(&state, kept, &mut factorisations)? else { break };
             steps += 1;
             let Some(next) = self.step(&state, system) else { break };
-            state = next;
+            let before = std::mem::replace(&mut state, next).residuals.primal;
+            let is_slow =
+                state.residuals.primal > SLOW * before && state.residuals.dual < state.residuals.primal / self.size;
+            if is_slow && self.penalty < stiffest {
+                state = self.stiffened(state);
+            }
         }
         let capped = self.capped(&state.u);
-        Ok(Finished { points: state.points, u: state.u, residuals: state.residuals, steps, factorisations, capped })
+        let penalty = self.penalty;
+        Ok(Finished {
+            points: state.points,
+            u: state.u,
+            penalty,
+            residuals: state.residuals,
+            steps,
+            factorisations,
+            capped,
+        })
+    }
+
+    /// The same points and multipliers under a stiffer penalty.
+    fn stiffened(&mut self, state: State) -> State {
+        self.penalty *= STIFFENING;
+        let u = state.u.iter().map(|u| *u / STIFFENING).collect();
+        self.state(state.points, u)
     }
 
     /// The number of constraints whose multiplier is at its cap.
@@ -182,6 +214,12 @@ impl Finish<'_> {
         while slope < 0.0 && length > 1e-3 {
             let trial = self.state(moved(&first, length), state.u.clone());
             if trial.value < state.value + 1e-4 * length * slope {
+                // Multipliers follow once the points have nearly found the minimum for those in hand.
+                let left = self.lagrangian_gradient(&trial.gradient, &trial.excess);
+                let left = left.iter().map(|g| g.length()).fold(0.0, f64::max) / self.force;
+                if left > MINIMISED * trial.residuals.primal / self.size {
+                    return Some(trial);
+                }
                 let excess = trial.excess.clone();
                 return Some(self.state(trial.points, excess));
             }

@@ -512,7 +512,6 @@ impl Engine {
     /// Newton steps from the points in hand. True if a solution was found; what is nearer is kept in any case.
     fn finish(&mut self, found: &mut Found, options: &SolveOptions, started: Instant) -> Result<bool> {
         let splitting = &self.splitting;
-        let penalty = finish::penalty_behind(splitting.penalty);
         let blocks =
             |local: &Local| local.items.iter().map(|item| 9 * item.point_count * item.point_count).sum::<usize>();
         if blocks(&splitting.soft) + blocks(&splitting.hard) > finish::MOST_ENTRIES {
@@ -526,7 +525,7 @@ impl Engine {
         let before = finish.residuals(&points, &u);
         let finished = finish.run(&points, &u, tolerance, &mut kept, &mut goes_on);
         self.kept = kept;
-        let Finished { points, u, residuals, steps, factorisations, capped } = finished?;
+        let Finished { points, u, penalty, residuals, steps, factorisations, capped } = finished?;
         found.newton_steps += steps;
         found.factorisations += factorisations;
         let merit = |residuals: &Residuals| (residuals.primal / self.size).max(residuals.dual);
