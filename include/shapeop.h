@@ -457,8 +457,8 @@ typedef struct shapeop_solve_report {
 } shapeop_solve_report;
 
 /**
- * The weights of the objective `1/2 handle sum |p - t|^2 + 1/2 closeness sum |p - p0|^2 + 1/2 fairness |L (p - p0)|^2` plus
- * the soft constraints, `p0` being the points at initialisation. Start from `shapeop_defaultObjective`.
+ * The weights of the objective `1/2 handle sum |p - t|^2 + 1/2 closeness sum |p - p0|^2 + 1/2 fairness |L (p - p0)|^2`
+ * plus the soft constraints, `p0` being the points at initialisation. Start from `shapeop_defaultObjective`.
  */
 typedef struct shapeop_objective {
     /**
@@ -482,7 +482,8 @@ typedef struct shapeop_objective {
      */
     double fairness_weight;
     /**
-     * How far a hard constraint may be from its set, relative to the bounding-box diagonal; at least 1e-14. Default 1e-12.
+     * How far a hard constraint may be from its set, relative to the bounding-box diagonal; at least 1e-14. Default
+     * 1e-12.
      */
     double tolerance;
 } shapeop_objective;
@@ -504,7 +505,8 @@ typedef struct shapeop_exploration {
      */
     unsigned int newton_step_count;
     /**
-     * 1 if the points are a solution: every hard constraint is met and the gradient vanishes, both within the tolerance.
+     * 1 if the points are a solution: every hard constraint is met and the gradient vanishes, both within the
+     * tolerance.
      */
     int is_solution;
     /**
@@ -1053,13 +1055,10 @@ SHAPEOP_API enum shapeop_err shapeop_energy(struct ShapeOpSolver *op, double *ou
 SHAPEOP_API enum shapeop_err shapeop_getViolations(struct ShapeOpSolver *op, double *out, int nb);
 
 /**
- * Makes a constraint hard (`is_hard` 1), to be met exactly, or soft (0). The weight of a hard constraint is its priority where
- * not everything can be met. Solving goes on from where it is.
+ * Makes a constraint hard (`is_hard` 1), to be met exactly, or soft (0). The weight of a hard constraint is its
+ * priority where not everything can be met. Solving goes on from where it is.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_setHard(struct ShapeOpSolver *op,
-                                 int constraint_id,
-                                 int is_hard);
+SHAPEOP_API enum shapeop_err shapeop_setHard(struct ShapeOpSolver *op, int constraint_id, int is_hard);
 
 /**
  * 1 if `constraint_id` is a hard constraint, 0 if it is soft or none, -1 if the call is refused.
@@ -1121,39 +1120,34 @@ enum shapeop_err shapeop_setFairness(struct ShapeOpSolver *op,
 SHAPEOP_API enum shapeop_err shapeop_getExploration(struct ShapeOpSolver *op, struct shapeop_exploration *out);
 
 /**
- * The number of hard constraints in the contradiction that the last exploration found; 0: none. Writes their ids to `ids`, which is
- * null or has room for `nb`; a smaller `nb` than that number writes nothing. Without them the others can be met.
+ * The number of hard constraints in the contradiction that the last exploration found; 0: none. Writes their ids to
+ * `ids`, which is null or has room for `nb`; a smaller `nb` than that number writes nothing. Without them the others
+ * can be met.
  *
  * # Safety
  * `ids` is null or writable for `nb` ints.
  */
-SHAPEOP_API
-int shapeop_getConflicts(struct ShapeOpSolver *op,
-                         int *ids,
-                         int nb);
+SHAPEOP_API int shapeop_getConflicts(struct ShapeOpSolver *op, int *ids, int nb);
 
 /**
- * The number of weight classes of the solution in hand, or -1 if it is none: handles, closeness, fairness, and one per type of
- * soft constraints.
+ * The number of weight classes of the solution in hand, or -1 if it is none: handles, closeness, fairness, and one per
+ * type of soft constraints.
  */
-SHAPEOP_API
-int shapeop_weightClassCount(struct ShapeOpSolver *op);
+SHAPEOP_API int shapeop_weightClassCount(struct ShapeOpSolver *op);
 
 /**
- * The name of a weight class: "handles", "closeness", "fairness", or the name of a type. Null if there is no such class. Valid until
- * the library is unloaded.
+ * The name of a weight class: "handles", "closeness", "fairness", or the name of a type. Null if there is no such
+ * class. Valid until the library is unloaded.
  */
-SHAPEOP_API
-const char *shapeop_weightClassName(struct ShapeOpSolver *op,
-                                    int index);
+SHAPEOP_API const char *shapeop_weightClassName(struct ShapeOpSolver *op, int index);
 
 /**
  * How the solution in hand answers a change of each weight: refused unless the last solve ended in one.
  *
- * - `points`: null, or where `dp/d ln w` goes, in model units: 3 coordinates of every point for the first class, then for
- *   the next, `nb_points` points per class.
- * - `squares`: null, or where the change of every class's squares `w sum |.|^2` per change of the logarithm of a weight goes: a
- *   row per weight, a column per class.
+ * - `points`: null, or where `dp/d ln w` goes, in model units: 3 coordinates of every point for the first class, then
+ *   for the next, `nb_points` points per class.
+ * - `squares`: null, or where the change of every class's squares `w sum |.|^2` per change of the logarithm of a
+ *   weight goes: a row per weight, a column per class.
  * - `nb_classes`: what `shapeop_weightClassCount` says.
  *
  * # Safety

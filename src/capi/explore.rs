@@ -29,8 +29,8 @@ pub enum shapeop_fairness {
     SO_FAIRNESS_THIRD_DIFFERENCES = 2,
 }
 
-/// The weights of the objective `1/2 handle sum |p - t|^2 + 1/2 closeness sum |p - p0|^2 + 1/2 fairness |L (p - p0)|^2` plus
-/// the soft constraints, `p0` being the points at initialisation. Start from `shapeop_defaultObjective`.
+/// The weights of the objective `1/2 handle sum |p - t|^2 + 1/2 closeness sum |p - p0|^2 + 1/2 fairness |L (p - p0)|^2`
+/// plus the soft constraints, `p0` being the points at initialisation. Start from `shapeop_defaultObjective`.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct shapeop_objective {
@@ -44,7 +44,8 @@ pub struct shapeop_objective {
     pub closeness_weight: f64,
     /// At least 0; without `shapeop_setFairness` it has nothing to weigh. Default 1.
     pub fairness_weight: f64,
-    /// How far a hard constraint may be from its set, relative to the bounding-box diagonal; at least 1e-14. Default 1e-12.
+    /// How far a hard constraint may be from its set, relative to the bounding-box diagonal; at least 1e-14. Default
+    /// 1e-12.
     pub tolerance: f64,
 }
 
@@ -58,7 +59,8 @@ pub struct shapeop_exploration {
     pub sweep_count: c_uint,
     /// Newton steps.
     pub newton_step_count: c_uint,
-    /// 1 if the points are a solution: every hard constraint is met and the gradient vanishes, both within the tolerance.
+    /// 1 if the points are a solution: every hard constraint is met and the gradient vanishes, both within the
+    /// tolerance.
     pub is_solution: c_int,
     /// The largest distance of a hard constraint from its set, in model units.
     pub largest_violation: f64,
@@ -103,8 +105,8 @@ fn as_told(objective: &Objective) -> shapeop_objective {
     }
 }
 
-/// Makes a constraint hard (`is_hard` 1), to be met exactly, or soft (0). The weight of a hard constraint is its priority where
-/// not everything can be met. Solving goes on from where it is.
+/// Makes a constraint hard (`is_hard` 1), to be met exactly, or soft (0). The weight of a hard constraint is its
+/// priority where not everything can be met. Solving goes on from where it is.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_setHard(op: *mut ShapeOpSolver, constraint_id: c_int, is_hard: c_int) -> shapeop_err {
     code(guard(op, |solver| {
@@ -304,8 +306,9 @@ fn nothing_found() -> Error {
     Error::new(Status::NotInitialised, reason)
 }
 
-/// The number of hard constraints in the contradiction that the last exploration found; 0: none. Writes their ids to `ids`, which is
-/// null or has room for `nb`; a smaller `nb` than that number writes nothing. Without them the others can be met.
+/// The number of hard constraints in the contradiction that the last exploration found; 0: none. Writes their ids to
+/// `ids`, which is null or has room for `nb`; a smaller `nb` than that number writes nothing. Without them the others
+/// can be met.
 ///
 /// # Safety
 /// `ids` is null or writable for `nb` ints.
@@ -323,15 +326,15 @@ pub unsafe extern "C" fn shapeop_getConflicts(op: *mut ShapeOpSolver, ids: *mut 
     }))
 }
 
-/// The number of weight classes of the solution in hand, or -1 if it is none: handles, closeness, fairness, and one per type of
-/// soft constraints.
+/// The number of weight classes of the solution in hand, or -1 if it is none: handles, closeness, fairness, and one per
+/// type of soft constraints.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_weightClassCount(op: *mut ShapeOpSolver) -> c_int {
     number(guard_read(op, |solver| c_count(solver.weight_classes().len())))
 }
 
-/// The name of a weight class: "handles", "closeness", "fairness", or the name of a type. Null if there is no such class. Valid until
-/// the library is unloaded.
+/// The name of a weight class: "handles", "closeness", "fairness", or the name of a type. Null if there is no such
+/// class. Valid until the library is unloaded.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_weightClassName(op: *mut ShapeOpSolver, index: c_int) -> *const c_char {
     let mut name = ptr::null();
@@ -354,10 +357,10 @@ pub extern "C" fn shapeop_weightClassName(op: *mut ShapeOpSolver, index: c_int) 
 
 /// How the solution in hand answers a change of each weight: refused unless the last solve ended in one.
 ///
-/// - `points`: null, or where `dp/d ln w` goes, in model units: 3 coordinates of every point for the first class, then for
-///   the next, `nb_points` points per class.
-/// - `squares`: null, or where the change of every class's squares `w sum |.|^2` per change of the logarithm of a weight goes: a
-///   row per weight, a column per class.
+/// - `points`: null, or where `dp/d ln w` goes, in model units: 3 coordinates of every point for the first class, then
+///   for the next, `nb_points` points per class.
+/// - `squares`: null, or where the change of every class's squares `w sum |.|^2` per change of the logarithm of a
+///   weight goes: a row per weight, a column per class.
 /// - `nb_classes`: what `shapeop_weightClassCount` says.
 ///
 /// # Safety

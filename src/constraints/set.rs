@@ -168,8 +168,8 @@ impl ConstraintSet {
     /// one returned. An error is placed at `name_of` the id that the constraint would have got.
     ///
     /// # Errors
-    /// The type is unknown, a count does not fit, an index is out of range, a weight is negative or not finite, a scalar
-    /// is outside its domain or names no reference of the type's kind. Nothing is added then.
+    /// The type is unknown, a count does not fit, an index is out of range, a weight is negative or not finite, a
+    /// scalar is outside its domain or names no reference of the type's kind. Nothing is added then.
     pub fn add(
         &mut self,
         points: &[DVec3],
@@ -268,7 +268,8 @@ impl ConstraintSet {
     /// Makes a constraint hard or soft; returns true if it was the other before.
     ///
     /// # Errors
-    /// The id is no constraint, or its rest state is degenerate and it is to become hard: nothing can be demanded of it.
+    /// The id is no constraint, or its rest state is degenerate and it is to become hard: nothing can be demanded of
+    /// it.
     pub fn set_hard(&mut self, id: ConstraintId, is_hard: bool) -> Result<bool> {
         self.check_hard(id, is_hard)?;
         let place = self.place(id)?;
@@ -293,7 +294,8 @@ impl ConstraintSet {
         Ok(())
     }
 
-    /// Forgets the constraints from `first` on as if they had never been added: those of the last call of [`Self::add`].
+    /// Forgets the constraints from `first` on as if they had never been added: those of the last call of
+    /// [`Self::add`].
     pub(crate) fn take_back(&mut self, first: ConstraintId) {
         for id in first..self.places.len() {
             if let Some(place) = self.places[id] {

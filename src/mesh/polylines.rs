@@ -3,9 +3,9 @@
 use super::{Mesh, Topology};
 use crate::error::Result;
 
-/// The polylines that the edges of `mesh` form, each edge in exactly one. At an inner point of valence four the next edge is the one
-/// that shares no face with the last; at a boundary point of valence three a boundary edge goes on along the boundary. Elsewhere
-/// polylines end. A closed one repeats its first point at its end.
+/// The polylines that the edges of `mesh` form, each edge in exactly one. At an inner point of valence four the next
+/// edge is the one that shares no face with the last; at a boundary point of valence three a boundary edge goes on
+/// along the boundary. Elsewhere polylines end. A closed one repeats its first point at its end.
 ///
 /// # Errors
 /// As [`Mesh::check`].

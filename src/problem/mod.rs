@@ -104,8 +104,8 @@ pub struct ForceSignature {
     /// A pressure, or the length of a normal force; negative: against the normals. Absent for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub magnitude: Option<f64>,
-    /// The faces that a pressure or a normal force acts on, each as at least 3 point indices; absent for the others. Normals
-    /// point to where the corners run counter-clockwise.
+    /// The faces that a pressure or a normal force acts on, each as at least 3 point indices; absent for the others.
+    /// Normals point to where the corners run counter-clockwise.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faces: Vec<Vec<u32>>,
 }
@@ -201,13 +201,15 @@ pub struct Problem {
     /// The forces, in the order of their ids.
     #[serde(default)]
     pub forces: Vec<ForceSignature>,
-    /// What is minimised while hard constraints are met (static mode). Absent: the defaults, if there is a hard constraint or a handle.
+    /// What is minimised while hard constraints are met (static mode). Absent: the defaults, if there is a hard
+    /// constraint or a handle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub objective: Option<Objective>,
     /// Points that are drawn to targets (static mode).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub handles: Vec<Handle>,
-    /// Edits of constraints between time steps (dynamic mode), for whoever makes the steps: see [`Problem::edits_before`].
+    /// Edits of constraints between time steps (dynamic mode), for whoever makes the steps: see
+    /// [`Problem::edits_before`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<Edit>,
     /// When to stop.

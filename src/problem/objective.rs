@@ -1,5 +1,6 @@
-//! What an exploration minimises while hard constraints are met: handles at their targets, the other points where they were,
-//! a fair displacement. Source: Deng et al. 2015, "Interactive design exploration for constrained meshes", section 2.2.
+//! What an exploration minimises while hard constraints are met: handles at their targets, the other points where they
+//! were, a fair displacement. Source: Deng et al. 2015, "Interactive design exploration for constrained meshes",
+//! section 2.2.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,9 +20,8 @@ pub enum Fairness {
     ThirdDifferences,
 }
 
-/// The weights of the objective
-/// `½ w_h Σ ‖p_i − t_i‖²` over handles `+ ½ w_c Σ ‖p_i − p⁰_i‖²` over the other points `+ ½ w_f ‖L (p − p⁰)‖²` plus the soft
-/// constraints, and how exactly hard constraints are to be met.
+/// The weights of the objective `½ w_h Σ ‖p_i − t_i‖²` over handles `+ ½ w_c Σ ‖p_i − p⁰_i‖²` over the other points `+
+/// ½ w_f ‖L (p − p⁰)‖²` plus the soft constraints, and how exactly hard constraints are to be met.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
@@ -110,7 +110,8 @@ impl FairnessRows {
         self.starts.push(self.entries.len());
     }
 
-    /// A row for every point that has neighbours: the point minus their mean. `edges` names each pair of neighbours once.
+    /// A row for every point that has neighbours: the point minus their mean. `edges` names each pair of neighbours
+    /// once.
     pub fn laplacian(point_count: usize, edges: &[[u32; 2]]) -> Self {
         let mut neighbours = vec![Vec::new(); point_count];
         for &[a, b] in edges {

@@ -1,10 +1,11 @@
 //! The local/global solver.
 //!
-//! One iteration: the *local step* projects the points onto every constraint; the *global step* solves
-//! `N x = Aᵀp + external` for new points. Static: `N = Σ s AᵀA`, `external` is the sum of forces. Dynamic: `N` gains the
-//! inertia `M = (m/δ₀²) I` and `external` is `M y`, `y` being where momentum alone would take the points. Either way an
-//! iteration with nearest projections never raises the energy. Forces on faces follow the points: `external` has them as they
-//! were at the points that the iteration begins at, and that promise does not hold with them. Sources: Bouaziz et al. 2012 and 2014; Deuss et al. 2015.
+//! One iteration: the *local step* projects the points onto every constraint; the *global step* solves `N x = Aᵀp +
+//! external` for new points. Static: `N = Σ s AᵀA`, `external` is the sum of forces. Dynamic: `N` gains the inertia `M
+//! = (m/δ₀²) I` and `external` is `M y`, `y` being where momentum alone would take the points. Either way an iteration
+//! with nearest projections never raises the energy. Forces on faces follow the points: `external` has them as they
+//! were at the points that the iteration begins at, and that promise does not hold with them. Sources: Bouaziz et al.
+//! 2012 and 2014; Deuss et al. 2015.
 
 mod acceleration;
 mod anderson;
@@ -120,7 +121,8 @@ impl std::fmt::Debug for Solver {
 }
 
 impl Workspace {
-    /// Exchanges `external` and `momentum` with what is kept: before they are computed anew, and again if that is refused.
+    /// Exchanges `external` and `momentum` with what is kept: before they are computed anew, and again if that is
+    /// refused.
     fn swap_external(&mut self) {
         let [external, momentum] = &mut self.kept;
         std::mem::swap(&mut self.external, external);
@@ -255,7 +257,8 @@ impl Solver {
         Ok(first)
     }
 
-    /// Takes back the constraints of the last call of [`Solver::add_constraints`], which begin at `first`: their ids are free again.
+    /// Takes back the constraints of the last call of [`Solver::add_constraints`], which begin at `first`: their ids
+    /// are free again.
     pub(crate) fn take_back_constraints(&mut self, first: ConstraintId) {
         self.constraints.take_back(first);
     }
@@ -379,8 +382,8 @@ impl Solver {
     /// `damping` the factor on velocities after each step.
     ///
     /// # Errors
-    /// `mass` or `timestep` is not finite and above 0, `damping` not finite and at least 0; there is a hard constraint, a handle or an
-    /// objective, which static mode alone has; or as [`Solver::init`].
+    /// `mass` or `timestep` is not finite and above 0, `damping` not finite and at least 0; there is a hard constraint,
+    /// a handle or an objective, which static mode alone has; or as [`Solver::init`].
     pub fn init_dynamic(&mut self, mass: f64, damping: f64, timestep: f64) -> Result<()> {
         check_above_0("masses", mass)?;
         check_damping(damping)?;
@@ -424,10 +427,10 @@ impl Solver {
         }
     }
 
-    /// Sets how the following solves are accelerated, and how many iterations are remembered for that (at most 64; 0: the
-    /// method's default). `Automatic`, which a new solver has, is `None` in [`Solver::solve`] and `QuasiNewton` in
-    /// [`Solver::solve_until`]. Each call, and so each time step, begins with an empty history. With forces on faces, which
-    /// not every energy has as its slope, all iterations are plain whatever is set.
+    /// Sets how the following solves are accelerated, and how many iterations are remembered for that (at most 64; 0:
+    /// the method's default). `Automatic`, which a new solver has, is `None` in [`Solver::solve`] and `QuasiNewton` in
+    /// [`Solver::solve_until`]. Each call, and so each time step, begins with an empty history. With forces on faces,
+    /// which not every energy has as its slope, all iterations are plain whatever is set.
     ///
     /// # Errors
     /// The memory is beyond its range.
@@ -440,8 +443,8 @@ impl Solver {
         Ok(())
     }
 
-    /// Sets how the linear system of the global step is solved; the next solve uses it. The iterates agree to about 1e-10 of
-    /// the model's size. [`Report::linear_solver`] says what ran.
+    /// Sets how the linear system of the global step is solved; the next solve uses it. The iterates agree to about
+    /// 1e-10 of the model's size. [`Report::linear_solver`] says what ran.
     pub fn set_linear_solver(&mut self, linear_solver: LinearSolver) {
         if linear_solver != self.linear_solver {
             self.linear_solver = linear_solver;
@@ -449,8 +452,8 @@ impl Solver {
         }
     }
 
-    /// What a plain iteration goes through; `None` before initialisation, after an edit that the next solve has yet to take up, and
-    /// with conjugate gradients.
+    /// What a plain iteration goes through; `None` before initialisation, after an edit that the next solve has yet to
+    /// take up, and with conjugate gradients.
     pub fn iteration_bytes(&self) -> Option<IterationBytes> {
         self.system.as_ref()?.iteration_bytes(&self.constraints)
     }
@@ -460,11 +463,11 @@ impl Solver {
         self.constraints.violations(&self.points)
     }
 
-    /// The energy at the current points: `½ Σ s ‖A x − P(x)‖²`, in static mode minus the potential of the forces as they
-    /// are now, in dynamic mode plus `½ (x−y)ᵀ M (x−y)` with the `y` of the last step.
+    /// The energy at the current points: `½ Σ s ‖A x − P(x)‖²`, in static mode minus the potential of the forces as
+    /// they are now, in dynamic mode plus `½ (x−y)ᵀ M (x−y)` with the `y` of the last step.
     ///
-    /// A pressure `p` counts as `−p V`, `V` being the volume that its faces enclose with the origin: its potential where they
-    /// are closed. A normal force has no potential and counts for nothing.
+    /// A pressure `p` counts as `−p V`, `V` being the volume that its faces enclose with the origin: its potential
+    /// where they are closed. A normal force has no potential and counts for nothing.
     pub fn energy(&self) -> f64 {
         let is_dynamic = self.dynamics.as_ref().is_some_and(|dynamics| dynamics.mode == Mode::Dynamic);
         let external =

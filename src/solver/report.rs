@@ -62,7 +62,8 @@ pub enum Outcome {
     Stalled = 4,
     /// A force acts along a motion that no constraint resists; the points did not move.
     Unbounded = 5,
-    /// Hard constraints contradict each other; [`super::Found::conflicts`] names a small set of them, and the points meet the others.
+    /// Hard constraints contradict each other; [`super::Found::conflicts`] names a small set of them, and the points
+    /// meet the others.
     Infeasible = 6,
 }
 
@@ -86,9 +87,9 @@ impl Outcome {
 pub struct Report {
     /// Iterations made: steps to new points.
     pub iterations: u32,
-    /// Evaluations made: a local step at points that were tried, whether they were kept or not, and the global step from
-    /// there where they were. Without acceleration one per iteration. The local step at the points of the start is not
-    /// counted.
+    /// Evaluations made: a local step at points that were tried, whether they were kept or not, and the global step
+    /// from there where they were. Without acceleration one per iteration. The local step at the points of the start is
+    /// not counted.
     pub evaluations: u32,
     /// What acceleration tried in vain.
     pub rejections: Rejections,

@@ -1,13 +1,15 @@
 //! Caps of multipliers, and which constraints contradict each other.
 //!
-//! Every hard constraint is elastic: violating it by a length `d` costs `ρ d`, so its multiplier never exceeds `ρ`. Where the cap is
-//! above the multiplier of the solution, the elastic solution is the hard one. A multiplier that stays at its cap while its constraint
-//! is violated gets a cap ten times as high, three times; after that the constraint takes part in a contradiction.
+//! Every hard constraint is elastic: violating it by a length `d` costs `ρ d`, so its multiplier never exceeds `ρ`.
+//! Where the cap is above the multiplier of the solution, the elastic solution is the hard one. A multiplier that stays
+//! at its cap while its constraint is violated gets a cap ten times as high, three times; after that the constraint
+//! takes part in a contradiction.
 //!
-//! As the cost is of the length and not of its square, few constraints are violated and the others are met. Caps that fall where the
-//! violation is large make them fewer still (reweighting); then every one of them is made hard again in turn, the least violated
-//! first, and stays hard if the others can still be met without the rest (a deletion filter, Chinneck 2008, "Feasibility and
-//! infeasibility in optimization", chapter 2). Sets are not convex: what is found is *a* small set, around the points in hand.
+//! As the cost is of the length and not of its square, few constraints are violated and the others are met. Caps that
+//! fall where the violation is large make them fewer still (reweighting); then every one of them is made hard again in
+//! turn, the least violated first, and stays hard if the others can still be met without the rest (a deletion filter,
+//! Chinneck 2008, "Feasibility and infeasibility in optimization", chapter 2). Sets are not convex: what is found is
+//! *a* small set, around the points in hand.
 
 use glam::DVec3;
 
@@ -15,8 +17,8 @@ use super::splitting::Splitting;
 use super::{Engine, distances};
 use crate::constraints::{ConstraintId, ConstraintSet};
 
-/// The first cap over the larger of the objective's gradient at `p⁰` and the force that moves a point of mean stiffness by the mean
-/// extent of a constraint, for a priority of 1.
+/// The first cap over the larger of the objective's gradient at `p⁰` and the force that moves a point of mean stiffness
+/// by the mean extent of a constraint, for a priority of 1.
 const CAP: f64 = 10.0;
 
 /// By how much a cap is raised, and how often.
@@ -37,7 +39,8 @@ const HALVED_AT: f64 = 1e-2;
 /// Sweeps in which the constraints must be met again once one was made hard.
 const TRIAL_SWEEPS: u32 = 120;
 
-/// The cap of every hard constraint's multiplier. `force` moves a point of mean stiffness by the mean extent of a constraint.
+/// The cap of every hard constraint's multiplier. `force` moves a point of mean stiffness by the mean extent of a
+/// constraint.
 pub(super) fn caps(splitting: &Splitting, constraints: &ConstraintSet, force: f64) -> Vec<f64> {
     let mut gradient = vec![DVec3::ZERO; splitting.points.len()];
     splitting.quadratic.gradient(splitting.quadratic.initial(), &mut gradient);

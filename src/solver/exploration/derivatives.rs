@@ -1,8 +1,10 @@
-//! Derivatives of projections, by central differences, and the second derivatives of the augmented Lagrangian that they make.
+//! Derivatives of projections, by central differences, and the second derivatives of the augmented Lagrangian that they
+//! make.
 //!
-//! The derivative `J` of the projection onto a smooth set at `w = z + ν`, `z` in the set and `ν` normal to it there, is 0 along the
-//! normals and `(I − S_ν)⁻¹` along the tangents, `S_ν` being the curvature of the set in the direction `ν`. So `I − J` holds normals and
-//! curvature: all that Newton's method needs of a constraint, and the projection is all that a type has to know.
+//! The derivative `J` of the projection onto a smooth set at `w = z + ν`, `z` in the set and `ν` normal to it there, is
+//! 0 along the normals and `(I − S_ν)⁻¹` along the tangents, `S_ν` being the curvature of the set in the direction `ν`.
+//! So `I − J` holds normals and curvature: all that Newton's method needs of a constraint, and the projection is all
+//! that a type has to know.
 
 use glam::DVec3;
 
@@ -86,8 +88,8 @@ impl Derivatives {
         }
     }
 
-    /// Calls `visit(a, b, value)` for the lower triangle of `Aᵀ (A − J)`, made symmetric; `a` and `b` count the coordinates of the
-    /// constraint's points.
+    /// Calls `visit(a, b, value)` for the lower triangle of `Aᵀ (A − J)`, made symmetric; `a` and `b` count the
+    /// coordinates of the constraint's points.
     pub(super) fn each_entry(
         &self,
         local: &Local,

@@ -1,16 +1,18 @@
 //! The finish: Newton's method on the augmented Lagrangian with its multipliers, once the sweeps are near.
 //!
-//! With `w = A p + u`, `v = P(w)` (that of the elastic set) and a penalty `m`, the multiplier is `λ = m u`, and a solution is where
+//! With `w = A p + u`, `v = P(w)` (that of the elastic set) and a penalty `m`, the multiplier is `λ = m u`, and a
+//! solution is where
 //!
 //! ```text
 //! ∇F(p) + m Aᵀ u = 0,        A p − v = 0
 //! ```
 //!
-//! Both are linearised with the derivative `J` of the projection, soft constraints included, so that the active set and the curvature
-//! of the sets come from the projections alone. The matrix `∇²F + m Aᵀ (I − J) A` is positive definite near a minimum; the multipliers
-//! of the linear problem are found by the method of multipliers, at one solve with its factor each. A step counts if it lowers the
-//! larger of the two residuals; otherwise the first solve is a descent direction of the augmented Lagrangian, which is searched.
-//! Source: Bertsekas 1996, "Constrained optimization and Lagrange multiplier methods", sections 2.3 and 4.
+//! Both are linearised with the derivative `J` of the projection, soft constraints included, so that the active set and
+//! the curvature of the sets come from the projections alone. The matrix `∇²F + m Aᵀ (I − J) A` is positive definite
+//! near a minimum; the multipliers of the linear problem are found by the method of multipliers, at one solve with its
+//! factor each. A step counts if it lowers the larger of the two residuals; otherwise the first solve is a descent
+//! direction of the augmented Lagrangian, which is searched. Source: Bertsekas 1996, "Constrained optimization and
+//! Lagrange multiplier methods", sections 2.3 and 4.
 
 use glam::DVec3;
 
@@ -24,8 +26,8 @@ use crate::linalg::symmetric::SymmetricMatrix;
 /// Newton steps at most.
 const STEPS: u32 = 30;
 
-/// Multiplier updates of one linear problem at most, and by how much they are to lower its residual: for a Newton step, and for a
-/// derivative that is an answer.
+/// Multiplier updates of one linear problem at most, and by how much they are to lower its residual: for a Newton step,
+/// and for a derivative that is an answer.
 #[derive(Clone, Copy)]
 struct Updates {
     most: u32,
@@ -35,17 +37,19 @@ struct Updates {
 const OF_A_STEP: Updates = Updates { most: 8, enough: 1e-4 };
 const OF_AN_ANSWER: Updates = Updates { most: 60, enough: 1e-10 };
 
-/// The penalty of the finish over that of the sweeps. Of 1, 5, 20, 100 and 1000, 5 needs the fewest Newton steps on the surfaces of Fig. 12
-/// and succeeds earliest: stiffer, the steps follow the curved sets in small pieces.
+/// The penalty of the finish over that of the sweeps. Of 1, 5, 20, 100 and 1000, 5 needs the fewest Newton steps on the
+/// surfaces of Fig. 12 and succeeds earliest: stiffer, the steps follow the curved sets in small pieces.
 const STIFFER: f64 = 5.0;
 
-/// Where a step leaves more than this part of the distance from the constraints, and the gradient is the smaller residual, multipliers
-/// come too slowly, and the penalty is raised: constraints that nearly depend on each other need that.
+/// Where a step leaves more than this part of the distance from the constraints, and the gradient is the smaller
+/// residual, multipliers come too slowly, and the penalty is raised: constraints that nearly depend on each other need
+/// that.
 const SLOW: f64 = 0.1;
 const STIFFENING: f64 = 5.0;
 const STIFFEST: f64 = 100.0;
 
-/// The gradient of the augmented Lagrangian over the distance from the constraints, both relative, below which multipliers are updated.
+/// The gradient of the augmented Lagrangian over the distance from the constraints, both relative, below which
+/// multipliers are updated.
 const MINIMISED: f64 = 0.3;
 
 /// Entries of the constraints' blocks from which on no Newton step is made: the factor would be out of proportion.
@@ -56,7 +60,8 @@ pub(super) const MOST_ENTRIES: usize = 60_000_000;
 pub struct Residuals {
     /// The largest distance of a hard constraint's rows from its set, in model units.
     pub primal: f64,
-    /// The largest gradient of the Lagrangian at a point, over the force that moves a point of mean stiffness by the model's size.
+    /// The largest gradient of the Lagrangian at a point, over the force that moves a point of mean stiffness by the
+    /// model's size.
     pub dual: f64,
 }
 
@@ -120,8 +125,8 @@ pub(super) fn penalty_behind(penalty: f64) -> f64 {
 }
 
 impl Finish<'_> {
-    /// Newton steps from `points` with the multipliers `m u` until both residuals are below their tolerance, or until no step helps.
-    /// `goes_on` is asked before each step.
+    /// Newton steps from `points` with the multipliers `m u` until both residuals are below their tolerance, or until
+    /// no step helps. `goes_on` is asked before each step.
     pub(super) fn run(
         &mut self,
         points: &[DVec3],
@@ -178,7 +183,8 @@ impl Finish<'_> {
         self.state(points.to_vec(), u.to_vec()).residuals
     }
 
-    /// How the solution with the multipliers `m u` moves per gradient that is added to that of the objective, each times 1.
+    /// How the solution with the multipliers `m u` moves per gradient that is added to that of the objective, each
+    /// times 1.
     pub(super) fn answers(
         &mut self,
         points: &[DVec3],
@@ -369,8 +375,8 @@ impl Finish<'_> {
         }
     }
 
-    /// Solves the linearised conditions for steps of points and multipliers: `gradient` is that of the objective, `excess` and `u` are
-    /// the state's. Returns the points' step of the first solve, and the whole.
+    /// Solves the linearised conditions for steps of points and multipliers: `gradient` is that of the objective,
+    /// `excess` and `u` are the state's. Returns the points' step of the first solve, and the whole.
     fn solve(
         &self,
         system: &mut System,
@@ -430,7 +436,8 @@ impl Finish<'_> {
         }
     }
 
-    /// The multipliers that the steps of the points ask for; returns what is left of the linearised constraints, in model units.
+    /// The multipliers that the steps of the points ask for; returns what is left of the linearised constraints, in
+    /// model units.
     fn update_multipliers(
         &self,
         system: &System,
@@ -483,7 +490,8 @@ pub(super) struct Steps {
 }
 
 impl Residuals {
-    /// True if both are within `tolerance`, which is relative to the model's `size` and to the force that belongs to it.
+    /// True if both are within `tolerance`, which is relative to the model's `size` and to the force that belongs to
+    /// it.
     pub(super) fn are_within(&self, tolerance: f64, size: f64) -> bool {
         self.primal <= tolerance * size && self.dual <= tolerance
     }

@@ -1,9 +1,9 @@
 //! Constraints with points of their own, so that each can be projected at other points than the model's: shifted by
 //! multipliers, or by differences for a derivative.
 //!
-//! The rows `A` of a constraint and its projection `P` are in the units of its type; `A⁺ = Aᵀ (A Aᵀ)⁻¹` takes rows back to the
-//! least move of the points that makes them. As a projection depends on `A x` alone, `P` at any rows `y + u` is that at the
-//! points `x + A⁺ u`.
+//! The rows `A` of a constraint and its projection `P` are in the units of its type; `A⁺ = Aᵀ (A Aᵀ)⁻¹` takes rows back
+//! to the least move of the points that makes them. As a projection depends on `A x` alone, `P` at any rows `y + u` is
+//! that at the points `x + A⁺ u`.
 
 use glam::DVec3;
 
@@ -22,7 +22,8 @@ pub(super) struct Item {
     pub(super) row_count: usize,
     /// Where its `A` and `A⁺` begin; `None` for centred types.
     coefficients: Option<[usize; 2]>,
-    /// Rows times this are lengths in model units, or as near to that as the type allows: the largest coefficient is then 1.
+    /// Rows times this are lengths in model units, or as near to that as the type allows: the largest coefficient is
+    /// then 1.
     pub(super) scale: f64,
 }
 
@@ -176,8 +177,8 @@ impl Local {
         }
     }
 
-    /// Moves the constraints' own points to `x + A⁺ u`, with `u` written for each constraint by `shift(item, rows A x, u)`, and
-    /// keeps `A x` in `rows`.
+    /// Moves the constraints' own points to `x + A⁺ u`, with `u` written for each constraint by `shift(item, rows A x,
+    /// u)`, and keeps `A x` in `rows`.
     pub(super) fn place(
         &mut self,
         x: &[DVec3],
@@ -237,8 +238,8 @@ fn pair_rows(k: usize) -> Vec<f64> {
     rows
 }
 
-/// `Aᵀ (A Aᵀ)⁻¹` of `row_count` rows of `k` coefficients, one row per point. Rows that depend on others get as little as
-/// round-off allows.
+/// `Aᵀ (A Aᵀ)⁻¹` of `row_count` rows of `k` coefficients, one row per point. Rows that depend on others get as little
+/// as round-off allows.
 fn pseudo_inverse(rows: &[f64], row_count: usize, k: usize) -> Vec<f64> {
     let row = |r: usize| &rows[r * k..(r + 1) * k];
     let product = |r: usize, s: usize| row(r).iter().zip(row(s)).map(|(a, b)| a * b).sum::<f64>();

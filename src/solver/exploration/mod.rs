@@ -5,30 +5,31 @@
 //! s.t. A p ∈ C for every hard constraint
 //! ```
 //!
-//! Sweeps of a splitting method ([`splitting`]) find the neighbourhood of a solution in a few milliseconds; Newton steps ([`finish`])
-//! then find it to the last digits. Both know a constraint by its projection alone. Multipliers have a cap, so that constraints which
-//! contradict each other are seen by theirs ([`conflicts`]); points, rows and multipliers are kept from one call to the next, whatever
-//! was changed in between. Source: Deng et al. 2015, "Interactive design exploration for constrained meshes".
+//! Sweeps of a splitting method ([`splitting`]) find the neighbourhood of a solution in a few milliseconds; Newton
+//! steps ([`finish`]) then find it to the last digits. Both know a constraint by its projection alone. Multipliers have
+//! a cap, so that constraints which contradict each other are seen by theirs ([`conflicts`]); points, rows and
+//! multipliers are kept from one call to the next, whatever was changed in between. Source: Deng et al. 2015,
+//! "Interactive design exploration for constrained meshes".
 
 mod conflicts;
 mod derivatives;
+mod engine;
 mod finish;
 mod local;
 mod quadratic;
 mod sensitivity;
 mod splitting;
 
-use std::collections::{BTreeMap, HashMap};
-use std::ops::ControlFlow;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use glam::DVec3;
 
-use self::finish::{Finish, Finished, Kept};
-use self::local::Local;
+use self::engine::{Engine, Memory, distances, extent};
+use self::finish::Kept;
 use self::quadratic::Quadratic;
-use self::splitting::{Splitting, Sweep};
-use super::{Outcome, Progress, ProgressFn, Report, SolveOptions, Solver};
+use self::splitting::Splitting;
+use super::{ProgressFn, Report, SolveOptions, Solver};
 use crate::constraints::ConstraintId;
 use crate::error::{Error, Result, Status, finite};
 use crate::problem::{FairnessRows, Mode, Objective};
@@ -36,16 +37,6 @@ use crate::problem::{FairnessRows, Mode, Objective};
 pub use self::finish::Residuals;
 pub use self::quadratic::ObjectiveTerms;
 pub use self::sensitivity::{Sensitivities, WeightClass};
-
-/// Sweeps before the first finish, and sweeps in which no constraint may have become active or inactive.
-const SETTLED: u32 = 5;
-
-/// Largest distance from a hard constraint, over the mean extent of hard constraints, at which a finish is tried.
-const NEAR: f64 = 1e-2;
-
-/// Sweeps between looks at the balance of the penalty, and how often it may be changed by that.
-const BALANCE: u32 = 10;
-const MOST_CHANGES: u32 = 4;
 
 /// What an exploration was asked for and what it holds.
 #[derive(Default)]
@@ -64,29 +55,6 @@ pub(super) struct Explorer {
     found: Option<Found>,
 }
 
-/// What outlives a change of the constraints.
-#[derive(Default)]
-struct Memory {
-    penalty: Option<f64>,
-    /// Multipliers by constraint, in rows: `λ` over the square of its scale.
-    multipliers: HashMap<ConstraintId, Vec<DVec3>>,
-}
-
-/// The splitting with what belongs to it.
-struct Engine {
-    splitting: Splitting,
-    kept: Kept,
-    /// The bounding-box diagonal of `p⁰`, and the force that moves a point of mean stiffness by it.
-    size: f64,
-    force: f64,
-    /// The mean extent of hard constraints.
-    extent: f64,
-    tolerance: f64,
-    changes: u32,
-    /// How often caps were raised.
-    raises: u32,
-}
-
 /// What an exploration found besides the points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Found {
@@ -96,7 +64,8 @@ pub struct Found {
     pub newton_steps: u32,
     /// Distance from the hard constraints and gradient of the Lagrangian, computed afresh at the end.
     pub residuals: Option<Residuals>,
-    /// The largest distance of a hard constraint from its set at the points, in model units, and which constraint it is.
+    /// The largest distance of a hard constraint from its set at the points, in model units, and which constraint it
+    /// is.
     pub largest_violation: f64,
     /// That constraint; `None` if there are no hard ones.
     pub worst: Option<ConstraintId>,
@@ -131,10 +100,12 @@ impl Solver {
         explorer.objective.is_some() || !explorer.handles.is_empty() || self.constraints.hard_count() > 0
     }
 
-    /// Makes constraints hard, to be met exactly, or soft again, all or none. Their weights then are priorities where not all can be met.
+    /// Makes constraints hard, to be met exactly, or soft again, all or none. Their weights then are priorities where
+    /// not all can be met.
     ///
     /// # Errors
-    /// An id is no constraint, or its rest state is degenerate; the place is `ids[i]`. In dynamic mode hard constraints are refused.
+    /// An id is no constraint, or its rest state is degenerate; the place is `ids[i]`. In dynamic mode hard constraints
+    /// are refused.
     pub fn set_hard(&mut self, ids: &[ConstraintId], is_hard: bool) -> Result<()> {
         if is_hard && self.dynamics.as_ref().is_some_and(|dynamics| dynamics.mode == Mode::Dynamic) {
             let reason = "hard constraints are for static mode, and the solver was initialised as dynamic";
@@ -350,257 +321,4 @@ impl Explorer {
             raises: 0,
         })
     }
-}
-
-/// The largest distance of a constraint's points from its first.
-fn extent(local: &Local, item: &local::Item, points: &[DVec3]) -> f64 {
-    let indices = &local.indices[item.points()];
-    let first = points[indices[0] as usize];
-    indices.iter().map(|&i| points[i as usize].distance(first)).fold(0.0, f64::max)
-}
-
-impl Memory {
-    /// Takes what `engine` knows.
-    fn take(&mut self, engine: &Engine) {
-        let splitting = &engine.splitting;
-        self.penalty = Some(splitting.penalty);
-        self.multipliers.clear();
-        let all = splitting.multipliers();
-        for item in &splitting.hard.items {
-            let own = all[item.rows()].iter().map(|row| splitting.penalty * *row).collect();
-            self.multipliers.insert(item.id, own);
-        }
-    }
-
-    /// Gives a new splitting the multipliers of the constraints that were there before.
-    fn give(&self, splitting: &mut Splitting) {
-        let mut all = vec![DVec3::ZERO; splitting.rows.len()];
-        for item in &splitting.hard.items {
-            if let Some(known) = self.multipliers.get(&item.id).filter(|known| known.len() == item.row_count) {
-                all[item.rows()].copy_from_slice(known);
-            }
-        }
-        splitting.resume(&all, 1.0);
-    }
-}
-
-impl Engine {
-    fn run(
-        &mut self,
-        solver: &mut Solver,
-        explorer: &Explorer,
-        options: &SolveOptions,
-        wants_finish: bool,
-        started: Instant,
-        progress: &mut ProgressFn<'_>,
-    ) -> Result<(Report, Found)> {
-        let mut found = Found::default();
-        let mut report = Report { outcome: Outcome::IterationLimit, ..Report::empty() };
-        let factorisations_before = self.splitting.factorisation_count;
-        report.energy_before = self.objective_value();
-        let has_budget = options.time_budget_seconds > 0.0;
-        let is_over = |started: &Instant| has_budget && started.elapsed().as_secs_f64() >= options.time_budget_seconds;
-        // While a handle moves, frames come before digits.
-        let may_finish = wants_finish && !(has_budget && explorer.has_new_targets);
-        let (mut settled, mut next_finish, mut least, mut idle) = (0, SETTLED, f64::INFINITY, 0);
-        let mut capped_for = 0;
-        let follows = solver.forces.has_forces_on_faces();
-        while found.sweeps < options.max_iterations {
-            if follows {
-                self.take_forces(solver, &solver.points);
-            }
-            let sweep = self.splitting.sweep(false);
-            found.sweeps += 1;
-            solver.points.copy_from_slice(&self.splitting.points);
-            report.largest_move = sweep.largest_move / self.size;
-            let are_finite = solver.points.iter().all(|point| point.is_finite());
-            if !(are_finite && sweep.residual.is_finite() && sweep.largest_move.is_finite()) {
-                // The caller of this function refuses it and restores the points.
-                report.energy_after = f64::NAN;
-                return Ok((report, found));
-            }
-            let now = Progress {
-                iteration: found.sweeps,
-                evaluations: found.sweeps,
-                energy: sweep.residual,
-                largest_move: report.largest_move,
-                solver,
-            };
-            if progress(&now) == ControlFlow::Break(()) {
-                report.outcome = Outcome::Cancelled;
-                break;
-            }
-            settled = if sweep.switched == 0 { settled + 1 } else { 0 };
-            if sweep.residual < 0.999 * least {
-                (least, idle) = (sweep.residual, 0);
-            } else {
-                idle += 1;
-            }
-            let is_near = sweep.primal <= NEAR * self.extent || idle > 3 * BALANCE;
-            if may_finish
-                && is_near
-                && found.sweeps >= next_finish
-                && (settled >= SETTLED || found.sweeps >= 4 * SETTLED)
-            {
-                let is_solution = self.finish(&mut found, options, started)?;
-                solver.points.copy_from_slice(&self.splitting.points);
-                // Forces on faces were held while the points moved.
-                let has_followed = !follows || self.take_forces(solver, &solver.points) <= self.tolerance * self.force;
-                if is_solution && has_followed {
-                    report.outcome = Outcome::Converged;
-                    break;
-                }
-                next_finish = if is_solution { 0 } else { found.sweeps + found.sweeps.max(2 * SETTLED) };
-            }
-            if is_over(&started) {
-                report.outcome = Outcome::TimeBudget;
-                break;
-            }
-            if self.is_at_rest(&sweep, options) {
-                report.outcome = Outcome::Converged;
-                break;
-            }
-            capped_for = if sweep.capped > 0 { capped_for + 1 } else { 0 };
-            if capped_for >= conflicts::PATIENCE && sweep.primal > self.tolerance * self.size {
-                capped_for = 0;
-                if self.raise_caps() {
-                    self.splitting.set_penalty(2.0 * self.splitting.penalty, &solver.constraints, false)?;
-                } else if may_finish {
-                    found.conflicts = self.find_conflicts();
-                    solver.points.copy_from_slice(&self.splitting.points);
-                    report.outcome = Outcome::Infeasible;
-                    break;
-                }
-            }
-            self.balance(&mut idle, found.sweeps, solver)?;
-        }
-        self.judge(&mut found);
-        found.factorisations += self.splitting.factorisation_count - factorisations_before;
-        report.iterations = found.sweeps;
-        report.evaluations = found.sweeps + found.newton_steps;
-        report.energy_after = self.objective_value();
-        report.factorisation_count = found.factorisations;
-        Ok((report, found))
-    }
-
-    /// Takes the forces as they are at `points`; returns the largest change of one.
-    fn take_forces(&mut self, solver: &Solver, points: &[DVec3]) -> f64 {
-        let mut forces = vec![DVec3::ZERO; points.len()];
-        solver.forces.sum_into(&mut forces);
-        solver.forces.add_forces_on_faces(points, &mut Vec::new(), &mut forces);
-        let changed = self.splitting.quadratic.set_forces(&forces);
-        self.splitting.quadratic_changed();
-        changed
-    }
-
-    /// True if sweeps alone came to rest.
-    fn is_at_rest(&self, sweep: &Sweep, options: &SolveOptions) -> bool {
-        let tolerance = options.tolerance.min(self.tolerance) * self.size;
-        options.tolerance > 0.0 && sweep.primal <= tolerance && sweep.largest_move <= tolerance && sweep.capped == 0
-    }
-
-    /// Raises a penalty under which the sweeps go round in circles.
-    fn balance(&mut self, idle: &mut u32, sweeps: u32, solver: &Solver) -> Result<()> {
-        if *idle >= 5 * BALANCE && self.changes < MOST_CHANGES && sweeps.is_multiple_of(BALANCE) {
-            self.splitting.set_penalty(4.0 * self.splitting.penalty, &solver.constraints, false)?;
-            self.changes += 1;
-            *idle = 0;
-        }
-        Ok(())
-    }
-
-    /// Newton steps from the points in hand. True if a solution was found; what is nearer is kept in any case.
-    fn finish(&mut self, found: &mut Found, options: &SolveOptions, started: Instant) -> Result<bool> {
-        let splitting = &self.splitting;
-        let blocks =
-            |local: &Local| local.items.iter().map(|item| 9 * item.point_count * item.point_count).sum::<usize>();
-        if blocks(&splitting.soft) + blocks(&splitting.hard) > finish::MOST_ENTRIES {
-            return Ok(false);
-        }
-        let (points, u) = (splitting.points.clone(), self.finish_multipliers());
-        let mut goes_on =
-            || options.time_budget_seconds == 0.0 || started.elapsed().as_secs_f64() < options.time_budget_seconds;
-        let (tolerance, mut kept) = (self.tolerance, std::mem::take(&mut self.kept));
-        let mut finish = self.finish_of();
-        let before = finish.residuals(&points, &u);
-        let finished = finish.run(&points, &u, tolerance, &mut kept, &mut goes_on);
-        self.kept = kept;
-        let Finished { points, u, penalty, residuals, steps, factorisations, capped } = finished?;
-        found.newton_steps += steps;
-        found.factorisations += factorisations;
-        let merit = |residuals: &Residuals| (residuals.primal / self.size).max(residuals.dual);
-        let is_solution = residuals.are_within(self.tolerance, self.size) && capped == 0;
-        if is_solution || merit(&residuals) < merit(&before) {
-            self.splitting.points = points;
-            self.splitting.resume(&u, penalty);
-        }
-        Ok(is_solution)
-    }
-
-    /// The finish of the splitting in hand.
-    fn finish_of(&mut self) -> Finish<'_> {
-        let splitting = &mut self.splitting;
-        Finish {
-            quadratic: &splitting.quadratic,
-            soft: &mut splitting.soft,
-            hard: &mut splitting.hard,
-            caps: &splitting.caps,
-            penalty: finish::penalty_behind(splitting.penalty),
-            size: self.size,
-            force: self.force,
-            is_parallel: false,
-        }
-    }
-
-    /// The splitting's multipliers in the finish's scale.
-    fn finish_multipliers(&self) -> Vec<DVec3> {
-        let penalty = self.splitting.penalty;
-        let factor = penalty / finish::penalty_behind(penalty);
-        self.splitting.multipliers().iter().map(|u| factor * *u).collect()
-    }
-
-    /// Computes afresh what the points are worth.
-    fn judge(&mut self, found: &mut Found) {
-        let (points, u) = (self.splitting.points.clone(), self.finish_multipliers());
-        let mut finish = self.finish_of();
-        let residuals = finish.residuals(&points, &u);
-        found.capped = finish.capped(&u);
-        found.is_solution = residuals.are_within(10.0 * self.tolerance, self.size) && found.capped == 0;
-        found.residuals = Some(residuals);
-        let splitting = &mut self.splitting;
-        found.penalty = splitting.penalty;
-        let distances = distances(&mut splitting.hard, &splitting.points);
-        let worst = distances.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((item, distance)) = worst {
-            found.largest_violation = distance;
-            found.worst = Some(splitting.hard.items[item].id);
-        }
-        found.terms = self.terms();
-    }
-
-    fn terms(&mut self) -> ObjectiveTerms {
-        let splitting = &mut self.splitting;
-        let mut terms = splitting.quadratic.terms(&splitting.points);
-        let squares = distances(&mut splitting.soft, &splitting.points);
-        let all = squares.iter().zip(&splitting.soft.items).zip(&splitting.soft.stiffness);
-        terms.soft = 0.5 * all.map(|((d, item), s)| s * (d / item.scale).powi(2)).sum::<f64>();
-        terms
-    }
-
-    fn objective_value(&mut self) -> f64 {
-        let ObjectiveTerms { handles, closeness, fairness, soft } = self.terms();
-        handles + closeness + fairness + soft - self.splitting.quadratic.work(&self.splitting.points)
-    }
-}
-
-/// The distance of each constraint's rows from their projection, in model units.
-fn distances(local: &mut Local, points: &[DVec3]) -> Vec<f64> {
-    let mut images = vec![DVec3::ZERO; local.row_count()];
-    local.place(points, &mut images, |_, _, _| {}, false);
-    local.project(false);
-    let squares = |item: &local::Item| {
-        let rows = images[item.rows()].iter().zip(&local.targets[item.rows()]);
-        rows.map(|(image, target)| image.distance_squared(*target)).sum::<f64>()
-    };
-    local.items.iter().map(|item| item.scale * squares(item).sqrt()).collect()
 }

@@ -1,7 +1,8 @@
 //! How a solution answers a change of weights.
 //!
-//! A solution solves `∇F(p; w) + Aᵀ λ = 0`, `A p ∈ C`. Differentiated by the logarithm of a weight class, whose part of the gradient is
-//! `g`, both conditions are linear in the changes of points and multipliers, with the matrix of the finish:
+//! A solution solves `∇F(p; w) + Aᵀ λ = 0`, `A p ∈ C`. Differentiated by the logarithm of a weight class, whose part of
+//! the gradient is `g`, both conditions are linear in the changes of points and multipliers, with the matrix of the
+//! finish:
 //!
 //! ```text
 //! ∇²L dp + Aᵀ dλ = −g,      the linearised constraints stay as they are
@@ -35,9 +36,11 @@ pub enum WeightClass {
 pub struct Sensitivities {
     /// The classes.
     pub classes: Vec<WeightClass>,
-    /// By class: `dp/d ln w` of every point, in model units: doubling the weight moves a point by about 0.69 times that.
+    /// By class: `dp/d ln w` of every point, in model units: doubling the weight moves a point by about 0.69 times
+    /// that.
     pub points: Vec<Vec<DVec3>>,
-    /// By class: `dE_j/d ln w` of every class's squares `E_j = w_j Σ ‖·‖²`, in the order of the classes; the `w_j` in front is held.
+    /// By class: `dE_j/d ln w` of every class's squares `E_j = w_j Σ ‖·‖²`, in the order of the classes; the `w_j` in
+    /// front is held.
     pub squares: Vec<Vec<f64>>,
     /// The `E_j` themselves: twice the terms of the objective.
     pub values: Vec<f64>,

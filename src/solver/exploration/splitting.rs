@@ -1,4 +1,5 @@
-//! Sweeps of the splitting method: every hard constraint has rows `y = A p` of its own, held to those of the points by a penalty.
+//! Sweeps of the splitting method: every hard constraint has rows `y = A p` of its own, held to those of the points by
+//! a penalty.
 //!
 //! One sweep of the Douglas-Rachford form of ADMM, from the rows `s`, with over-relaxation `α`:
 //!
@@ -9,9 +10,9 @@
 //! s ← s + α (v − A p)                      or an Anderson step from the last sweeps, where the residual falls
 //! ```
 //!
-//! The multiplier of a constraint is `λ = μ (A p − s)`. Lengths of rows are in model units, see [`super::local::Item::scale`].
-//! Sources: Deng et al. 2015, section 3; Ouyang et al. 2020, "Anderson acceleration for nonconvex ADMM based on Douglas-Rachford
-//! splitting", for the choice of `s` as the variable.
+//! The multiplier of a constraint is `λ = μ (A p − s)`. Lengths of rows are in model units, see
+//! [`super::local::Item::scale`]. Sources: Deng et al. 2015, section 3; Ouyang et al. 2020, "Anderson acceleration for
+//! nonconvex ADMM based on Douglas-Rachford splitting", for the choice of `s` as the variable.
 
 use glam::DVec3;
 
@@ -32,8 +33,8 @@ const RELAXATION: f64 = 1.6;
 /// Sweeps that Anderson acceleration remembers.
 const MEMORY: usize = 6;
 
-/// The penalty over that at which it and the objective have the same trace. On the surfaces of Fig. 12, of 1, 3, 10 and 30, 10 needs the
-/// fewest sweeps to a tenth of the distance (16), and the first finish succeeds.
+/// The penalty over that at which it and the objective have the same trace. On the surfaces of Fig. 12, of 1, 3, 10 and
+/// 30, 10 needs the fewest sweeps to a tenth of the distance (16), and the first finish succeeds.
 const SHARE: f64 = 10.0;
 
 /// A constraint counts as active from this part of the model's size on.
@@ -105,7 +106,8 @@ struct Accelerated {
 }
 
 impl Splitting {
-    /// A splitting of the constraints of `set` over `points`, with `penalty`, or with that which the traces of the matrix suggest.
+    /// A splitting of the constraints of `set` over `points`, with `penalty`, or with that which the traces of the
+    /// matrix suggest.
     pub(super) fn new(
         quadratic: Quadratic,
         set: &ConstraintSet,
@@ -310,8 +312,8 @@ impl Accelerated {
         (self.residual, self.is_trial) = (f64::INFINITY, false);
     }
 
-    /// Replaces `rows`, whose plain step leads to `next` and leaves `residual`: by an accelerated step, or by the plain one. A trial
-    /// that raised the residual is taken back to the plain step from where it began.
+    /// Replaces `rows`, whose plain step leads to `next` and leaves `residual`: by an accelerated step, or by the plain
+    /// one. A trial that raised the residual is taken back to the plain step from where it began.
     fn advance(&mut self, rows: &mut [DVec3], next: &[DVec3], residual: f64, is_parallel: bool) {
         // False for NaN.
         if self.is_trial && !(residual < self.residual) {
