@@ -8,8 +8,8 @@ from contextlib import contextmanager
 
 from shapeop_gh.errors import ShapeOpError
 
-# The published client's help calls the one so; faces of any number of corners the other.
-ALIASES = {"AngleConstraint": "Angle", "PlanarPolygon": "Plane"}
+# The published client's help calls the type so.
+ALIASES = {"AngleConstraint": "Angle"}
 
 
 def make(type_name, index_lists, weights, scalar_lists):
