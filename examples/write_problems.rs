@@ -88,7 +88,7 @@ pub(crate) fn explore_moves() -> Result<String, shapeop::error::Error> {
     let mut frames: Vec<String> = (1..=MOVES)
         .map(|frame| {
             let share = f64::from(frame) / f64::from(MOVES);
-            let [x, y, z] = (home + share * DVec3::new(1.0, 0.5, 2.5)).to_array();
+            let [x, y, z] = (home + share * DVec3::new(0.5, 0.25, 1.25)).to_array();
             format!("    {{\"handles\": [{{\"point\": {middle}, \"target\": [{x:.4}, {y:.4}, {z:.4}]}}]}}")
         })
         .collect();
