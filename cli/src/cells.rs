@@ -13,9 +13,6 @@ use crate::shown::worst_of;
 /// The end of the scale, in percent of the mean edge: a millimetre in a metre, which a hard constraint should be far below.
 const HIGH_PERCENT: f64 = 0.1;
 
-/// The share of the scale from which on a colour differs from that of nothing.
-const SEEN: f64 = 0.05;
-
 /// The hard constraints on each face (on each edge, where there are no faces) whose violations are lengths.
 pub struct Cells {
     on: On,
@@ -66,9 +63,7 @@ impl Cells {
         let (on, handles) = (self.on, Vec::new());
         let mut panel = Panel { mesh, edges, title, values, on, pointed_at: None, caption: String::new(), handles };
         if let Some((index, words)) = worst_of(&panel) {
-            // What cannot be seen is no place to point at.
-            let is_visible = panel.values[index] > SEEN * HIGH_PERCENT;
-            (panel.pointed_at, panel.caption) = (is_visible.then_some(index), words);
+            (panel.pointed_at, panel.caption) = (Some(index), words);
         }
         panel
     }

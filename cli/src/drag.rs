@@ -85,10 +85,13 @@ pub fn replay(
         }
         let before = clock.seconds;
         let is_solution = |solver: &Solver| solver.found().is_some_and(|found| found.is_solution);
+        let changes = frame.is_some_and(|frame| !frame.handles.is_empty() || !frame.releases.is_empty());
         for attempt in 0..if frame.is_some() { 1 } else { SETTLING } {
-            // Sweeps alone may come to rest a digit short of a solution; from there the next solve finds it.
-            let goes_on = attempt == 0 || outcome == Outcome::Converged;
-            if frame.is_none() && (is_solution(&solver) || !goes_on) {
+            // Where nothing changes, a contradiction stays one. Sweeps alone may come to rest a digit short of a solution: from there
+            // the next solve finds it.
+            let is_contradiction = !changes && outcome == Outcome::Infeasible;
+            let is_settled = frame.is_none() && is_solution(&solver);
+            if is_contradiction || is_settled || attempt > 0 && outcome != Outcome::Converged {
                 break;
             }
             let options = SolveOptions {

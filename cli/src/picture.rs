@@ -22,6 +22,8 @@ const FOOTER: f64 = 44.0;
 const LEGEND: f64 = 210.0;
 /// Height over width of the room for one mesh, at most.
 const MAX_ASPECT: f64 = 1.1;
+/// The share of a scale from which on a colour differs from that of 0.
+const SEEN: f64 = 0.02;
 const INK: &str = "#1f2430";
 const FAINT: &str = "#667085";
 const HANDLE: &str = "#0b6fb8";
@@ -156,13 +158,19 @@ impl Picture<'_> {
         let (x, y) = (room.left + 0.5 * room.width, room.top + room.height - 28.0);
         let title = words(&panel.title, x, y, 15.0, INK).set("text-anchor", "middle").set("font-weight", "bold");
         group = group.add(title);
-        if let Some(index) = panel.pointed_at {
+        if let Some(index) = panel.pointed_at.filter(|index| self.is_seen(panel, *index)) {
             group = group.add(pointer(self.places_of(panel, index).iter().map(|&point| place(point))));
         }
         if !panel.caption.is_empty() {
             group = group.add(words(&panel.caption, x, y + 20.0, 13.5, INK).set("text-anchor", "middle"));
         }
         group
+    }
+
+    /// True if the colour of a face or an edge differs from that of 0: what cannot be seen is no place to point at.
+    fn is_seen(&self, panel: &Panel<'_>, index: usize) -> bool {
+        let (Some(scale), Some(value)) = (&self.scale, panel.values.get(index)) else { return true };
+        value.abs() > SEEN * scale.range[1]
     }
 
     /// The points of a face or of an edge.

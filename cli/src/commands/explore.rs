@@ -230,12 +230,22 @@ impl Report {
         } else if let Some(sensitivities) = &self.sensitivities {
             parts.push(sensitivities.in_lines(self.mean_edge()));
         } else if self.settled.is_some() {
-            parts.push(
-                "  What weights do can be told of a solution only, and the last solve did not reach one.".to_owned(),
-            );
+            parts.push(self.no_solution_in_words());
         }
         parts.push(output.in_lines());
         parts.join("\n\n")
+    }
+
+    fn no_solution_in_words(&self) -> String {
+        let start = "  What weights do can be told of a solution only, and the last solve did not reach one";
+        match self.settled.as_ref().and_then(|settled| Some((settled.found.worst?, settled.found.largest_violation))) {
+            Some((worst, violation)) => format!(
+                "{start}: constraint {worst} is off by {}.\n  It may need more sweeps (--iterations), or hard constraints \
+                 contradict each other.",
+                number(violation)
+            ),
+            None => format!("{start}; it may need more sweeps (--iterations)."),
+        }
     }
 
     fn frames_in_lines(&self) -> String {
