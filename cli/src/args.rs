@@ -29,7 +29,7 @@ Examples:
   shapeop types                                  the constraints there are
 
 Files: OBJ, OFF and PLY with polygons of any size. The order of points and faces stays as it is.
-Exit code: 0 done, 1 refused, 2 wrong options, 3 hard constraints contradict each other (the nearest shape is written), \
+Exit code: 0 done, 1 refused, 2 wrong options, 3 hard constraints contradict each other (a shape that meets the others is written), \
 130 stopped with Ctrl-C (what was reached is written).")]
 pub struct Cli {
     #[command(subcommand)]

@@ -106,7 +106,8 @@ pub fn replay(
                 bar.show(step as u32 + 1, "residual", now.energy, now.largest_move);
                 clock.start();
                 if is_interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            })?;
+            });
+            let report = report.with_context(|| format!("frames[{}]", step.min(count - 1)))?;
             clock.stop();
             outcome = report.outcome;
             track.see_last(clock.seconds, solver.points());

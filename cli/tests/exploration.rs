@@ -276,6 +276,9 @@ fn what_is_wrong_with_a_drag_is_named_by_frame_and_field() {
         assert!(stderr.starts_with("error: ") && stderr.contains(expected), "{stderr}");
     }
     assert!(out.files().is_empty(), "{:?}", out.files());
+    let huge = frames("huge.json", r#"{}, {"handles": [{"point": 84, "target": [0, 0, 1e308]}]}"#);
+    let stderr = refused(&shapeop_into(&folder, &["explore", &problem, "--handles", &huge]), 1);
+    assert!(stderr.contains("explore.json: frames[1]: coordinates, forces or weights are so large"), "{stderr}");
     assert!(refused(&shapeop(&["explore", &problem, "--handles", "no.json"]), 1).contains("no.json: cannot be read"));
     let usage = refused(&shapeop(&["explore", &problem, "--handles", &good, "--budget-ms", "-1"]), 2);
     assert!(usage.contains("expected a number of at least 0"), "{usage}");
