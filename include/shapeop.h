@@ -572,11 +572,12 @@ typedef struct shapeop_recipe_options {
      */
     double closeness;
     /**
-     * The weight of fairness; 0, the default, for none.
+     * The weight of fairness; 0, the default, for none ("rationalize": for ten times the closeness).
      */
     double fairness;
     /**
-     * The length that "equalize" draws edges to, in model units; 0, the default: their mean. Other recipes refuse it.
+     * In model units: the length that "equalize" draws edges to; 0, the default: their mean. The distance that "rationalize"
+     * allows the diagonals of a quad; 0: planar quads. Other recipes refuse it.
      */
     double length;
     /**
@@ -1195,8 +1196,8 @@ SHAPEOP_API enum shapeop_err shapeop_defaultRecipeOptions(struct shapeop_recipe_
 
 /**
  * The problem that a recipe makes of a mesh, as JSON for `shapeop_setProblem`: "planarize", "circularize", "smooth",
- * "regularize" or "equalize" (`shapeop_recipeName`); null if it is refused. Its points are those of the mesh in their
- * order. The text is the calling thread's own, valid until that thread's next call of this function or of
+ * "regularize", "equalize" or "rationalize" (`shapeop_recipeName`); null if it is refused. Its points are those of the mesh
+ * in their order. The text is the calling thread's own, valid until that thread's next call of this function or of
  * `shapeop_problemText`.
  *
  * - `points`: `x0 y0 z0 x1 ...` in model units, `nb_points` points.

@@ -193,6 +193,8 @@ fn recipes_make_the_problems_of_the_rust_api() {
     };
     let expected = recipes::equalize(&mesh, Some(1.25), &same).unwrap().to_json();
     assert_eq!(recipe("equalize", &flat, Some(&chosen)), Ok(expected));
+    let expected = recipes::rationalize(&mesh, Some(1.25), &same).unwrap().to_json();
+    assert_eq!(recipe("rationalize", &flat, Some(&chosen)), Ok(expected));
     let of = |change: fn(&mut shapeop_recipe_options)| {
         let mut options = recipe_options();
         change(&mut options);

@@ -26,6 +26,13 @@ fn the_committed_problems_are_current() {
     }
 }
 
+#[test]
+fn the_committed_drag_is_current() {
+    let text =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/explore_moves.json")).unwrap();
+    assert!(text == write_problems::explore_moves().unwrap(), "run `cargo run --example write_problems`");
+}
+
 /// Makes the steps of a dynamic problem with its edits; after each, `look` sees the points.
 fn simulate(problem: &Problem, steps: u32, look: &mut dyn FnMut(u32, &[DVec3])) -> Vec<DVec3> {
     let mut solver = Solver::from_problem(problem).unwrap();

@@ -323,3 +323,22 @@ fn what_cannot_be_is_refused_by_name_and_changes_nothing() {
     assert_eq!(solve(&mut solver).outcome, Outcome::Converged);
     assert!(solver.init_dynamic(1.0, 1.0, 1.0).is_err());
 }
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let mesh = translation_surface(70).unwrap();
+    let run = |thread_count| {
+        let mut solver = solver_of(&mesh, &Objective::default());
+        solver.set_thread_count(thread_count);
+        on_faces(&mut solver, &mesh, "Plane", &[], true);
+        on_faces(&mut solver, &mesh, "RegularPolygon", &[], false);
+        solver.set_handle(2450, mesh.points[2450] + DVec3::Z).unwrap();
+        solver.init().unwrap();
+        solver.solve(12).unwrap();
+        solver.points().to_vec()
+    };
+    let one = run(1);
+    for thread_count in [2, 3] {
+        assert!(run(thread_count) == one, "{thread_count} threads");
+    }
+}

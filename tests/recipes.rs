@@ -8,7 +8,7 @@ use shapeop::mesh::measure::{self, Spread};
 use shapeop::mesh::{Mesh, Topology, file};
 use shapeop::problem::Problem;
 use shapeop::problem::recipes::{self, Anchors, Fairness, RecipeOptions};
-use shapeop::solver::{Report, SolveOptions, Solver};
+use shapeop::solver::{Outcome, Report, SolveOptions, Solver};
 
 const QUAD_MESHES: [&str; 6] =
     ["conical1", "costa_mesh_free2", "botanic-garden-bubble-0", "tubemesh", "hypar", "costa2k_poly"];
@@ -98,6 +98,101 @@ fn what_errs_is_refused_with_its_place() {
     assert_eq!(with(|options| options.anchors.points = vec![0, 9]), "anchors[1]: 9 is out of range for 9 points");
     let error = recipes::equalize(&tent(), Some(0.0), &default).unwrap_err().to_string();
     assert_eq!(error, "length: expected a finite number above 0, found 0");
+}
+
+#[test]
+fn a_rationalised_mesh_is_an_exploration() {
+    let anchors = Anchors { points: vec![4], corners: true, ..Anchors::default() };
+    let options = RecipeOptions { closeness: 0.2, anchors, ..RecipeOptions::default() };
+    let faces = [tent().faces, vec![vec![0, 1, 2]]].concat();
+    let mesh = Mesh { faces, ..tent() };
+    let planar = recipes::rationalize(&mesh, None, &options).unwrap();
+    planar.check().unwrap();
+    assert!(planar.constraints.iter().all(|constraint| constraint.hard));
+    assert_eq!((planar.constraints.len(), count(&planar, "Plane")), (4, 4), "a triangle needs nothing");
+    let objective = planar.objective.clone().unwrap();
+    assert_eq!((objective.closeness_weight, objective.fairness_weight, objective.handle_weight), (0.2, 2.0, 2000.0));
+    let handles: Vec<u32> = planar.handles.iter().map(|handle| handle.point).collect();
+    assert_eq!(handles, [0, 2, 4, 6, 8]);
+    assert!(planar.handles.iter().all(|handle| handle.target == planar.points[handle.point as usize]));
+
+    let hexagon: Vec<u32> = vec![0, 1, 2, 5, 8, 7];
+    let mesh = Mesh { points: tent().points, faces: vec![vec![0, 1, 4, 3], hexagon] };
+    let options = RecipeOptions { fairness: 0.5, fairness_kind: Fairness::Smooth, ..RecipeOptions::default() };
+    let bounded = recipes::rationalize(&mesh, Some(0.01), &options).unwrap();
+    assert_eq!(bounded.constraints[0].type_name, "DiagonalDistance");
+    assert_eq!(bounded.constraints[0].scalars, Some(vec![0.01]));
+    assert!(bounded.constraints[1].type_name == "Plane" && count(&bounded, "Laplacian") > 0);
+    assert_eq!(bounded.objective.unwrap().fairness_weight, 0.0);
+
+    let refusal = |length, options: &RecipeOptions| recipes::rationalize(&tent(), length, options).unwrap_err();
+    let none = RecipeOptions { closeness: 0.0, ..RecipeOptions::default() };
+    assert!(refusal(None, &none).to_string().starts_with("closeness: expected a number above 0"));
+    let told = refusal(Some(-1.0), &RecipeOptions::default()).to_string();
+    assert_eq!(told, "length: expected a finite number above 0, found -1");
+}
+
+/// Corners alternately h over and h under a square: of all planar quads the square itself is nearest, and as the pattern of moves
+/// (1, −1, 1, −1) is an eigenvector of the Laplacian, it is the fairest too.
+#[test]
+fn a_bent_square_is_rationalised_to_the_square() {
+    for scale in [1e-3, 1.0, 1e3] {
+        let corners = [[0.0, 0.0, 0.1], [1.0, 0.0, -0.1], [1.0, 1.0, 0.1], [0.0, 1.0, -0.1]];
+        let mesh = Mesh { points: corners.map(|p| scale * DVec3::from(p)).to_vec(), faces: vec![vec![0, 1, 2, 3]] };
+        let problem = recipes::rationalize(&mesh, None, &RecipeOptions::default()).unwrap();
+        let (after, _) = solved(&problem, &settings_of(&problem));
+        for (point, start) in after.points.iter().zip(&mesh.points) {
+            assert!((*point - start.with_z(0.0)).length() < 1e-8 * scale, "{point} at scale {scale}");
+        }
+    }
+}
+
+#[test]
+fn rationalised_faces_are_planar_to_the_last_digits() {
+    for name in ["hypar", "tubemesh", "hex_mesh_welded"] {
+        let mesh = read(name);
+        let problem = recipes::rationalize(&mesh, None, &RecipeOptions::default()).unwrap();
+        let (after, report) = solved(&problem, &settings_of(&problem));
+        assert_eq!(report.outcome, Outcome::Converged, "{name}");
+        let (distance, moved) =
+            (spread(&after, measure::plane_distance).max, measure::displacements(&mesh.points, &after.points).unwrap());
+        let edge = Spread::of(&measure::edge_lengths(&mesh).unwrap()).mean;
+        println!(
+            "{name}: {distance:.1e} from planes, moved {:.3} of an edge, {} sweeps",
+            Spread::of(&moved).max / edge,
+            report.iterations
+        );
+        assert!(distance < 2e-9 * mesh.diagonal(), "{name}: {distance:e}");
+    }
+}
+
+#[test]
+fn bounded_diagonals_stay_within_the_bound_and_use_it() {
+    let mesh = read("tubemesh");
+    let bound = 0.01 * Spread::of(&measure::edge_lengths(&mesh).unwrap()).mean;
+    let problem = recipes::rationalize(&mesh, Some(bound), &RecipeOptions::default()).unwrap();
+    let (after, report) = solved(&problem, &settings_of(&problem));
+    assert_eq!(report.outcome, Outcome::Converged);
+    let largest = after.faces.iter().map(|face| {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| after.points[face[i] as usize]);
+        (c - a).cross(d - b).normalize().dot(b - a).abs()
+    });
+    let largest = largest.fold(0.0, f64::max);
+    assert!((largest - bound).abs() < 2e-9 * mesh.diagonal(), "{largest} against {bound}");
+}
+
+#[test]
+fn anchors_of_a_rationalised_mesh_keep_their_place() {
+    let mesh = read("tubemesh");
+    let anchors = Anchors { corners: true, ..Anchors::default() };
+    let problem = recipes::rationalize(&mesh, None, &RecipeOptions { anchors, ..RecipeOptions::default() }).unwrap();
+    let (after, report) = solved(&problem, &settings_of(&problem));
+    assert_eq!(report.outcome, Outcome::Converged);
+    let moved = measure::displacements(&mesh.points, &after.points).unwrap();
+    let largest = Spread::of(&moved).max;
+    let of_corners = recipes::boundary_corners(&mesh).unwrap().iter().map(|&i| moved[i as usize]).fold(0.0, f64::max);
+    println!("corners moved {:.1e} of the largest move", of_corners / largest);
+    assert!(of_corners < 1e-2 * largest, "{of_corners} of {largest}");
 }
 
 #[test]

@@ -23,11 +23,14 @@ Examples:
   shapeop check roof.obj                         how planar is it? the worst faces by name
   shapeop planarize roof.obj                     planar faces, near the design
   shapeop planarize roof.obj --closeness 0.001   more planar, less near
+  shapeop rationalize roof.obj                   planar to the last digits, and fair
   shapeop solve problem.json                     any set of constraints
+  shapeop explore problem.json --handles moves.json   a drag, hard constraints met all the way
   shapeop types                                  the constraints there are
 
 Files: OBJ, OFF and PLY with polygons of any size. The order of points and faces stays as it is.
-Exit code: 0 done, 1 refused, 2 wrong options, 130 stopped with Ctrl-C (what was reached is written).")]
+Exit code: 0 done, 1 refused, 2 wrong options, 3 hard constraints contradict each other (the nearest shape is written), \
+130 stopped with Ctrl-C (what was reached is written).")]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
@@ -46,6 +49,8 @@ Examples:
   shapeop solve examples/circularize.json
   shapeop solve cloth.json --steps 200           dynamic: 200 time steps, a picture of some frames
 
+Constraints that are \"hard\" are met exactly; if they contradict each other, a small set of them is named, and the exit \
+code is 3.
 The form of the file is docs/problem.schema.json. Faces (or edges) in it are what the pictures show.")]
     Solve(SolveArgs),
     /// Make every face planar
@@ -89,6 +94,39 @@ Examples:
 
 Builds: EdgeStrain for each edge with the length edited, Closeness for each point.")]
     Equalize(EqualizeArgs),
+    /// Make every face planar to the last digits (or bound the diagonals of quads), near the design and with fair moves
+    #[command(after_help = "\
+Examples:
+  shapeop rationalize roof.obj
+  shapeop rationalize roof.obj --diagonals 1 --anchors corners
+  shapeop rationalize roof.obj --closeness 0.05 --fairness 5      smoother moves, farther from the design
+
+Builds: a hard Plane for each face of more than 3 corners; with --diagonals a hard DiagonalDistance for each quad. Of all \
+meshes that meet this, the one is found that is nearest to the design and whose moves are fair; what counts is the ratio \
+of --fairness to --closeness. Anchors are handles: they give in only where planar faces leave no other way.
+A flat face can be cut from a sheet; diagonals within 1 % of an edge let a pane be bent in cold.")]
+    #[command(mut_arg("weight", |arg| arg.help("Priority of faces, where not all can be planar")))]
+    #[command(mut_arg("closeness", |arg| arg.help("Weight that draws every point to where it was, above 0")))]
+    #[command(mut_arg("fairness", |arg| arg.help("Weight of fair moves at every point; 0: ten times the closeness")))]
+    Rationalize(RationalizeArgs),
+    /// Replay a drag: handles move frame by frame, hard constraints stay met; write every frame
+    #[command(after_help = "\
+Examples:
+  shapeop explore examples/explore.json --handles examples/explore_moves.json
+  shapeop explore roof.json --handles drag.json --budget-ms 16        as at 60 frames a second
+  shapeop explore roof.json --handles drag.json --picture svg -o results
+
+The problem is one for solve, with \"hard\": true at constraints, \"handles\" and an \"objective\". The moves:
+
+  {\"version\": 1, \"frames\": [
+    {\"handles\": [{\"point\": 84, \"target\": [0, 0, 5]}]},      a point becomes a handle, or its target moves
+    {\"handles\": [{\"point\": 84, \"target\": [0, 0, 6]}], \"releases\": [12]},      and handle 12 is let go
+    {}]}                                            nothing changes: the solver goes on
+
+Writes a mesh per frame, the mesh of the end (solved without a limit of time), a picture of some frames, a plot of the \
+distance from the final shape over time, and a report. Prints what doubling each weight would do, or which hard \
+constraints contradict each other (exit code 3).")]
+    Explore(ExploreArgs),
     /// Measure a mesh: planarity, edges, angles; a histogram, the worst faces by name
     #[command(after_help = "\
 Examples:
@@ -148,6 +186,35 @@ pub struct EqualizeArgs {
     pub length: Option<f64>,
     #[command(flatten)]
     pub recipe: RecipeArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct RationalizeArgs {
+    /// Let the diagonals of quads be so far apart, in percent of the mean edge, instead of planar [default: planar]
+    #[arg(long, value_name = "PERCENT", value_parser = parse_limit, allow_negative_numbers = true, help_heading = "Goal")]
+    pub diagonals: Option<f64>,
+    #[command(flatten)]
+    pub recipe: RecipeArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct ExploreArgs {
+    /// The problem file (JSON)
+    pub problem: PathBuf,
+    /// The file of the moves (JSON), frame by frame
+    #[arg(long, value_name = "MOVES")]
+    pub handles: PathBuf,
+    /// Milliseconds for each frame; 0: as long as it takes
+    #[arg(long, value_name = "MS", default_value_t = 0.0, value_parser = parse_budget, allow_negative_numbers = true)]
+    pub budget_ms: f64,
+    /// Sweeps at most for each frame [default: max_iterations of the problem]
+    #[arg(long, value_name = "N")]
+    pub iterations: Option<u32>,
+    /// Threads; 0: as many as the machine has. The result does not depend on it, unless time runs out
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    #[command(flatten)]
+    pub output: OutputArgs,
 }
 
 /// What a recipe takes.
@@ -347,6 +414,11 @@ pub struct TypesArgs {
 fn parse_limit(text: &str) -> Result<f64, String> {
     let limit = text.parse::<f64>().ok().filter(|limit| *limit > 0.0 && limit.is_finite());
     limit.ok_or_else(|| "expected a number above 0".to_owned())
+}
+
+fn parse_budget(text: &str) -> Result<f64, String> {
+    let budget = text.parse::<f64>().ok().filter(|budget| *budget >= 0.0 && budget.is_finite());
+    budget.ok_or_else(|| "expected a number of at least 0".to_owned())
 }
 
 /// Reads "corners,boundary,3,10-12".

@@ -3,8 +3,12 @@
 
 mod args;
 mod camera;
+mod cells;
 mod colours;
 mod commands;
+mod drag;
+mod exploration;
+mod moves;
 mod output;
 mod picture;
 mod plot;
@@ -29,7 +33,12 @@ pub enum Ending {
     Done,
     /// Ctrl-C; what was reached is written.
     Interrupted,
+    /// Hard constraints contradict each other; what meets the others is written.
+    Infeasible,
 }
+
+/// The exit code where hard constraints contradict each other.
+const INFEASIBLE: u8 = 3;
 
 /// The exit code of a program that was stopped with Ctrl-C: 128 and the number of SIGINT.
 const INTERRUPTED: u8 = 130;
@@ -48,12 +57,18 @@ fn main() -> ExitCode {
             let recipe = commands::recipe::Recipe::Equalize { length: args.length };
             commands::recipe::run(recipe, &args.recipe, is_quiet)
         }
+        Command::Rationalize(args) => {
+            let recipe = commands::recipe::Recipe::Rationalize { diagonals: args.diagonals };
+            commands::recipe::run(recipe, &args.recipe, is_quiet)
+        }
+        Command::Explore(args) => commands::explore::run(&args, is_quiet),
         Command::Check(args) => commands::check::run(&args, is_quiet),
         Command::Types(args) => commands::types::run(&args, is_quiet),
     };
     match ending {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
+        Ok(Ending::Infeasible) => ExitCode::from(INFEASIBLE),
         Err(error) => {
             // A closed standard error leaves the exit code to tell.
             let _ = writeln!(std::io::stderr(), "error: {error:#}");

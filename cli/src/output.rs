@@ -1,5 +1,6 @@
 //! The files of a run: all written whole, under names that tell what they are.
 
+use std::collections::BTreeMap;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -18,6 +19,7 @@ pub struct Output {
     picture: PictureFormat,
     /// What was written, by what it is.
     written: Vec<(&'static str, PathBuf)>,
+    frames: Vec<PathBuf>,
 }
 
 impl Output {
@@ -25,7 +27,13 @@ impl Output {
     pub fn new(folder: &Path, input: &Path, command: &str, picture: PictureFormat) -> Result<Self> {
         std::fs::create_dir_all(folder).with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
         let name = input.file_stem().map_or("problem".into(), |stem| stem.to_string_lossy());
-        Ok(Self { folder: folder.to_owned(), stem: format!("{name}.{command}"), picture, written: Vec::new() })
+        Ok(Self {
+            folder: folder.to_owned(),
+            stem: format!("{name}.{command}"),
+            picture,
+            written: Vec::new(),
+            frames: Vec::new(),
+        })
     }
 
     fn path(&self, ending: &str) -> PathBuf {
@@ -37,6 +45,20 @@ impl Output {
         write_whole(&path, bytes)?;
         self.written.push((what, path));
         Ok(())
+    }
+
+    /// Where [`Self::mesh`] writes.
+    pub fn mesh_path(&self, format: Format) -> String {
+        self.path(&format!(".{format}")).display().to_string()
+    }
+
+    /// Writes the mesh of a frame; returns where.
+    pub fn frame(&mut self, number: usize, mesh: &Mesh, format: Format) -> Result<String> {
+        let path = self.path(&format!(".frame-{number:03}.{format}"));
+        write_whole(&path, &encode(mesh, format)?)?;
+        let name = path.display().to_string();
+        self.frames.push(path);
+        Ok(name)
     }
 
     pub fn mesh(&mut self, mesh: &Mesh, format: Format) -> Result<()> {
@@ -57,16 +79,30 @@ impl Output {
 
     /// Writes the report, last, so that it lists the other files.
     pub fn report(&mut self, report: &mut Report) -> Result<()> {
+        self.report_with(|files| {
+            report.files = files;
+            report.to_json()
+        })
+    }
+
+    /// The same for any report: `to_json` is given the files by what they are.
+    pub fn report_with(&mut self, to_json: impl FnOnce(BTreeMap<String, String>) -> Result<String>) -> Result<()> {
         let path = self.path(".json");
         let files = self.written.iter().map(|(what, path)| ((*what).to_owned(), path.display().to_string()));
-        report.files = files.chain([("report".to_owned(), path.display().to_string())]).collect();
-        self.write("report", ".json", report.to_json()?.as_bytes())
+        let text = to_json(files.chain([("report".to_owned(), path.display().to_string())]).collect())?;
+        self.write("report", ".json", text.as_bytes())
     }
 
     /// The files written, in lines for the table.
     pub fn in_lines(&self) -> String {
-        let lines: Vec<String> =
-            self.written.iter().map(|(what, path)| format!("  {what:<12} {}", path.display())).collect();
+        let line = |what: &str, path: &Path| format!("  {what:<12} {}", path.display());
+        let mut lines: Vec<String> = self.written.iter().map(|(what, path)| line(what, path)).collect();
+        if let [first, .., last] = self.frames.as_slice() {
+            let last = last.file_name().unwrap_or_default().to_string_lossy();
+            lines.push(format!("{} … {last}", line("frames", first)));
+        } else if let [only] = self.frames.as_slice() {
+            lines.push(line("frame", only));
+        }
         lines.join("\n")
     }
 }

@@ -22,8 +22,11 @@ const FOOTER: f64 = 44.0;
 const LEGEND: f64 = 210.0;
 /// Height over width of the room for one mesh, at most.
 const MAX_ASPECT: f64 = 1.1;
+/// The share of a scale from which on a colour differs from that of 0.
+const SEEN: f64 = 0.02;
 const INK: &str = "#1f2430";
 const FAINT: &str = "#667085";
+const HANDLE: &str = "#0b6fb8";
 
 /// One mesh in a picture.
 pub struct Panel<'a> {
@@ -34,8 +37,12 @@ pub struct Panel<'a> {
     /// A number per face or per edge, in the unit of the scale; empty: no colours.
     pub values: Vec<f64>,
     pub on: On,
-    /// The face or edge to point at, with what to say of it.
-    pub worst: Option<(usize, String)>,
+    /// The face or edge to point at.
+    pub pointed_at: Option<usize>,
+    /// A line under the title.
+    pub caption: String,
+    /// Points that are drawn to targets, each as where it is and its target.
+    pub handles: Vec<[DVec3; 2]>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -82,7 +89,9 @@ struct Room {
 
 impl Picture<'_> {
     pub fn to_svg(&self) -> String {
-        let all_points: Vec<DVec3> = self.panels.iter().flat_map(|panel| panel.mesh.points.iter().copied()).collect();
+        let targets = |panel: &Panel<'_>| panel.handles.iter().map(|[_, target]| *target).collect::<Vec<_>>();
+        let points = |panel: &Panel<'_>| [panel.mesh.points.clone(), targets(panel)].concat();
+        let all_points: Vec<DVec3> = self.panels.iter().flat_map(points).collect();
         // The last: a cloth shows itself when it hangs, not while it lies.
         let normals: Vec<DVec3> = self.panels.last().into_iter().flat_map(|panel| normals_of(panel.mesh)).collect();
         let camera = Camera::fitting(&all_points, &normals);
@@ -143,14 +152,25 @@ impl Picture<'_> {
             _ if !panel.edges.is_empty() => self.draw_edges(group, panel, camera, &place),
             _ => draw_points(group, panel, &place),
         };
+        for [at, target] in panel.handles.iter().map(|pair| pair.map(place)) {
+            group = group.add(handle(at, target));
+        }
         let (x, y) = (room.left + 0.5 * room.width, room.top + room.height - 28.0);
         let title = words(&panel.title, x, y, 15.0, INK).set("text-anchor", "middle").set("font-weight", "bold");
         group = group.add(title);
-        if let Some((index, what)) = &panel.worst {
-            group = group.add(pointer(self.places_of(panel, *index).iter().map(|&point| place(point))));
-            group = group.add(words(what, x, y + 20.0, 13.5, INK).set("text-anchor", "middle"));
+        if let Some(index) = panel.pointed_at.filter(|index| self.is_seen(panel, *index)) {
+            group = group.add(pointer(self.places_of(panel, index).iter().map(|&point| place(point))));
+        }
+        if !panel.caption.is_empty() {
+            group = group.add(words(&panel.caption, x, y + 20.0, 13.5, INK).set("text-anchor", "middle"));
         }
         group
+    }
+
+    /// True if the colour of a face or an edge differs from that of 0: what cannot be seen is no place to point at.
+    fn is_seen(&self, panel: &Panel<'_>, index: usize) -> bool {
+        let (Some(scale), Some(value)) = (&self.scale, panel.values.get(index)) else { return true };
+        value.abs() > SEEN * scale.range[1]
     }
 
     /// The points of a face or of an edge.
@@ -263,6 +283,19 @@ fn draw_points(mut group: Group, panel: &Panel<'_>, place: &dyn Fn(DVec3) -> DVe
         group = group.add(Circle::new().set("cx", rounded(at.x)).set("cy", rounded(at.y)).set("r", 2).set("fill", INK));
     }
     group
+}
+
+/// A dot where a handle is, a ring where it is drawn to, and a line between.
+fn handle(at: DVec2, target: DVec2) -> Group {
+    let circle = |place: DVec2, radius: f64| {
+        Circle::new().set("cx", rounded(place.x)).set("cy", rounded(place.y)).set("r", radius)
+    };
+    let dot = circle(at, 3.4).set("fill", HANDLE).set("stroke", "#ffffff").set("stroke-width", 1.2);
+    if at.distance(target) < 2.0 {
+        return Group::new().add(dot);
+    }
+    let ring = circle(target, 5.0).set("fill", "none").set("stroke", HANDLE).set("stroke-width", 1.8);
+    Group::new().add(line(at, target, HANDLE, 1.4).set("stroke-dasharray", "4 3")).add(ring).add(dot)
 }
 
 /// A ring around points on the screen.

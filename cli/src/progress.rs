@@ -42,13 +42,14 @@ impl Progress {
         Self { bar }
     }
 
-    pub fn show(&self, position: u32, energy: f64, largest_move: f64) {
+    /// `measure` is what `value` is: the energy, or the residual of an exploration.
+    pub fn show(&self, position: u32, measure: &str, value: f64, largest_move: f64) {
         if self.bar.is_hidden() {
             return;
         }
         self.bar.set_position(u64::from(position));
         self.bar
-            .set_message(format!("energy {energy:.4e}  largest move {largest_move:.1e}  (Ctrl-C stops and writes)"));
+            .set_message(format!("{measure} {value:.4e}  largest move {largest_move:.1e}  (Ctrl-C stops and writes)"));
     }
 
     pub fn finish(&self) {

@@ -10,6 +10,8 @@ use shapeop::mesh::measure::{Spread, displacements};
 use shapeop::problem::{Mode, Problem, Settings};
 use shapeop::solver::Outcome;
 
+use crate::exploration::Exploration;
+use crate::plot::Measure;
 use crate::quality::Quality;
 use crate::run::{History, Run};
 
@@ -27,10 +29,12 @@ pub struct Report {
     pub faces: usize,
     /// Constraints by type.
     pub constraints: BTreeMap<String, usize>,
+    /// Those of them that are hard, by type.
+    pub hard_constraints: BTreeMap<String, usize>,
     /// What the recipe was asked for; null for a problem file.
     pub options: Value,
     pub settings: Settings,
-    /// How the run ended: converged, iteration limit, time budget, cancelled, stalled.
+    /// How the run ended: converged, iteration limit, time budget, cancelled, stalled, infeasible.
     pub outcome: &'static str,
     pub iterations: u32,
     /// Local steps at points that were tried, kept or not.
@@ -49,6 +53,8 @@ pub struct Report {
     pub displacement: Displacement,
     /// The violation of the constraints at the end, by type, in the type's unit; places are constraint ids.
     pub violations: BTreeMap<String, Violations>,
+    /// What was found with hard constraints, handles or an objective; null without any.
+    pub exploration: Option<Exploration>,
     /// Points that no constraint of a weight above 0 holds; they keep their place.
     pub unconstrained_points: usize,
     /// Constraints whose rest state spans too little to say what they ask for.
@@ -105,12 +111,15 @@ pub struct Subject<'a> {
 impl Report {
     pub fn new(subject: &Subject<'_>, run: &Run) -> Result<Self> {
         let Subject { problem, before, after, limit, .. } = *subject;
-        let mut constraints = BTreeMap::new();
+        let (mut constraints, mut hard_constraints) = (BTreeMap::new(), BTreeMap::new());
         let mut by_type: BTreeMap<&str, Vec<(usize, f64)>> = BTreeMap::new();
         let mut degenerate_constraints = Vec::new();
         for (id, violation) in run.solver.violations().into_iter().enumerate() {
             let Some(view) = run.solver.constraint(id) else { continue };
             *constraints.entry(view.info.name.to_owned()).or_insert(0) += 1;
+            if view.is_hard {
+                *hard_constraints.entry(view.info.name.to_owned()).or_insert(0) += 1;
+            }
             by_type.entry(view.info.name).or_default().push((id, violation));
             if view.is_degenerate {
                 degenerate_constraints.push(id);
@@ -141,6 +150,7 @@ impl Report {
             points: problem.points.len(),
             faces: problem.faces.len(),
             constraints,
+            hard_constraints,
             options: subject.options.clone(),
             settings: subject.settings,
             outcome: solver_report.outcome.text(),
@@ -171,6 +181,7 @@ impl Report {
                 max_over_mean_edge: edge.map(|edge| moved.max / edge),
             },
             violations: violations.collect(),
+            exploration: Exploration::of(&run.solver),
             unconstrained_points: run.solver.unconstrained_count(),
             degenerate_constraints,
             history: run.history.clone(),
@@ -178,9 +189,23 @@ impl Report {
         })
     }
 
+    /// True if hard constraints contradict each other.
+    pub fn is_infeasible(&self) -> bool {
+        self.outcome == Outcome::Infeasible.text()
+    }
+
+    /// What the history has as energy.
+    pub fn measure(&self) -> Measure {
+        if self.exploration.is_some() { Measure::Residual } else { Measure::Energy }
+    }
+
     /// "converged after 81 iterations in 0.32 s".
     pub fn ending(&self) -> String {
-        let outcome = if self.outcome == Outcome::Cancelled.text() { "stopped with Ctrl-C" } else { self.outcome };
+        let outcome = match self.outcome {
+            cancelled if cancelled == Outcome::Cancelled.text() => "stopped with Ctrl-C",
+            _ if self.is_infeasible() => "hard constraints contradict each other: stopped",
+            outcome => outcome,
+        };
         let plural = |count: u32, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
         let (iterations, seconds) = (plural(self.iterations, "iteration"), self.seconds.total);
         if self.mode == Mode::Static {

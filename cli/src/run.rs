@@ -33,6 +33,7 @@ pub struct Run {
 /// One entry per iteration; those of all steps follow each other.
 #[derive(Clone, Default, Serialize)]
 pub struct History {
+    /// The energy; of an exploration the residual of its sweeps.
     pub energy: Vec<f64>,
     pub largest_move: Vec<f64>,
     /// One entry per time step: the energy at its end, and the largest move over the step relative to the diagonal of the
@@ -58,6 +59,12 @@ pub fn settings(problem: &Problem, args: &IterateArgs) -> Settings {
     }
 }
 
+/// True if a problem has anything to explore: hard constraints, handles or an objective.
+pub fn explores(problem: &Problem) -> bool {
+    let has_hard = problem.constraints.iter().any(|constraint| constraint.hard);
+    has_hard || !problem.handles.is_empty() || problem.objective.is_some()
+}
+
 /// Solves `problem` with `settings`; `problem.settings` is not looked at.
 pub fn run(problem: &Problem, settings: &Settings, threads: usize, is_quiet: bool) -> Result<Run> {
     let started = Instant::now();
@@ -67,6 +74,8 @@ pub fn run(problem: &Problem, settings: &Settings, threads: usize, is_quiet: boo
     let is_dynamic = problem.mode == Mode::Dynamic;
     let step_count = if is_dynamic { settings.steps } else { 1 };
     let progress = Progress::new(if is_dynamic { step_count } else { settings.max_iterations }, is_quiet);
+    // What an exploration shows while it runs is how far its sweeps are from agreeing.
+    let measure = if explores(problem) { "residual" } else { "energy" };
     let mut history = History::default();
     let mut frames = vec![Frame { step: 0, points: solver.points().to_vec() }];
     let mut total: Option<Report> = None;
@@ -90,7 +99,7 @@ pub fn run(problem: &Problem, settings: &Settings, threads: usize, is_quiet: boo
         let report = solver.solve_until(&options, &mut |now| {
             history.energy.push(now.energy);
             history.largest_move.push(now.largest_move);
-            progress.show(if is_dynamic { step } else { now.iteration }, now.energy, now.largest_move);
+            progress.show(if is_dynamic { step } else { now.iteration }, measure, now.energy, now.largest_move);
             if is_interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         if report.outcome == Outcome::Unbounded {

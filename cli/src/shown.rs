@@ -66,8 +66,11 @@ impl<'a> Shown<'a> {
             }
             Colour::None => (On::Faces, Vec::new()),
         };
-        let mut panel = Panel { mesh, edges, title, values, on, worst: None };
-        panel.worst = self.worst(&panel);
+        let mut panel =
+            Panel { mesh, edges, title, values, on, pointed_at: None, caption: String::new(), handles: Vec::new() };
+        if let Some((index, words)) = worst_of(&panel) {
+            (panel.pointed_at, panel.caption) = (Some(index), words);
+        }
         panel
     }
 
@@ -103,19 +106,6 @@ impl<'a> Shown<'a> {
         })
     }
 
-    fn worst(&self, panel: &Panel<'_>) -> Option<(usize, String)> {
-        let (at, value) = panel.values.iter().copied().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-        if value == 0.0 {
-            return None;
-        }
-        let mean = panel.values.iter().map(|value| value.abs()).sum::<f64>() / panel.values.len() as f64;
-        let place = match panel.on {
-            On::Faces => format!("face {at}"),
-            On::Edges => panel.edges.get(at).map(|[a, b]| format!("edge {a}-{b}"))?,
-        };
-        Some((at, format!("mean {}, worst {} at {place}", percent(mean / 100.0), percent(value / 100.0))))
-    }
-
     fn displacement_of_faces(&self, mesh: &Mesh) -> Vec<f64> {
         let moved = measure::displacements(&self.before.points, &mesh.points).unwrap_or_default();
         let of_face = |face: &Vec<u32>| {
@@ -131,6 +121,20 @@ impl<'a> Shown<'a> {
         };
         self.rest.unwrap_or_default().iter().map(strain).collect()
     }
+}
+
+/// The worst face or edge of a panel, with what to say of it.
+pub fn worst_of(panel: &Panel<'_>) -> Option<(usize, String)> {
+    let (at, value) = panel.values.iter().copied().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    if value == 0.0 {
+        return None;
+    }
+    let mean = panel.values.iter().map(|value| value.abs()).sum::<f64>() / panel.values.len() as f64;
+    let place = match panel.on {
+        On::Faces => format!("face {at}"),
+        On::Edges => panel.edges.get(at).map(|[a, b]| format!("edge {a}-{b}"))?,
+    };
+    Some((at, format!("mean {}, worst {} at {place}", percent(mean / 100.0), percent(value / 100.0))))
 }
 
 /// The largest size of a number in a panel.

@@ -89,13 +89,16 @@ pub fn of_report(report: &Report) -> String {
         text.push_str("\n\n");
     }
     let energy = format!("{} -> {}", number(report.energy.before), number(report.energy.after));
-    let lines = [
-        row(&["energy", &energy]),
+    let mut lines = vec![row(&[if report.exploration.is_some() { "objective" } else { "energy" }, &energy])];
+    if let Some(exploration) = &report.exploration {
+        lines.push(row(&["violation", &exploration.violation_in_words()]));
+    }
+    lines.extend([
         row(&["moved, mean", &format!("{}{}", number(moved.absolute.mean), relative(moved.mean_over_mean_edge))]),
         row(&["moved, max", &format!("{}{}", number(moved.absolute.max), relative(moved.max_over_mean_edge))]),
         row(&["iterations", &report.iterations.to_string()]),
         row(&["seconds", &format!("{:.2}", report.seconds.total)]),
-    ];
+    ]);
     let lines: Vec<String> = lines.iter().map(|line| format!("  {:<12} {}", line[0], line[1])).collect();
     text + &lines.join("\n")
 }

@@ -333,13 +333,13 @@ class Hard(Running):
     def test_handles_of_unlike_strengths_stay_soft_constraints_of_their_own(self):
         line, component = points([0, 0, 0, 1, 0, 0]), self.canvas.add("ShapeOpHandles")
         edge = signature(self.canvas, "EdgeLength", [[0, 1]], [1.0], [[1.0, 1.0]], Hard=True)
-        ends = [LineCurve(Point3d(0, 0, 0), Point3d(4, 0, 0)), LineCurve(Point3d(1, 0, 0), Point3d(1, 0, 0))]
+        ends = [LineCurve(Point3d(0, 0, 0), Point3d(-4, 0, 0)), LineCurve(Point3d(1, 0, 0), Point3d(1, 0, 0))]
         handles = component.run(Points=line, Handles=ends, Strength=[3.0, 1.0])["ConstraintSigs"]
         with Calls() as calls:
             result = self.settle(edge + handles, Points=tree(line))
             self.assertEqual((calls["shapeop_setHandle"], calls["shapeop_addConstraints"]), (0, 2))
-        # 3 (t - 4)^2 + t^2 and the library's closeness of both points: t (3 + 1 + 0.2) = 12.
-        self.assertAlmostEqual(self.where(result)[0], 12 / 4.2, 6)
+        # 3 (t + 4)^2 + t^2 and the library's closeness of both points: t (3 + 1 + 0.2) = -12.
+        self.assertAlmostEqual(self.where(result)[0], -12 / 4.2, 6)
 
     def test_hard_constraints_come_and_go_with_a_fresh_start_and_change_on_the_way(self):
         some = [signature(self.canvas, "Closeness", self.each[:5], [weight]) for weight in (0.1, 5.0)]
@@ -506,16 +506,17 @@ class Seeing(Case):
         self.assertEqual(made["Scalars"][row], "length, range_min = 1, range_max = 1")
         self.assertEqual(made["Units"][row], "model units")
         self.assertEqual(made["Points"][made["Types"].index("Plane")][:9], "3 or more")
-        # Every listed name can be used, but for those of types that refer to a shape, which no component brings.
+        # Every listed name can be used; those of reference shapes, which have no ports yet, say what is missing.
         for name in made["Types"]:
             row = made["Types"].index(name)
-            if made["Scalars"][row].startswith("reference"):
-                continue
             least = int(made["Points"][row].split(" ")[0].split(":")[0])
             held = self.planes() + signature(self.canvas, name, [list(range(least))])
             solver = self.canvas.add("ShapeOpOneShotSolver")
             solver.run(ConstraintSigs=tree(held + self.held()), Points=tree(points(self.given)), MaxIterations=1)
-            self.assertEqual(solver.errors(), [])
+            if made["Scalars"][row] == "reference":
+                self.assertIn("0 references", solver.errors()[0])
+            else:
+                self.assertEqual(solver.errors(), [])
         self.assertEqual(component.run(Filter="sphere")["Types"], ["Sphere"])
 
 

@@ -18,7 +18,7 @@ use crate::error::{Error, Result, Status};
 use crate::mesh::Mesh;
 use crate::mesh::measure::{FACE_MEASURES, of_faces};
 use crate::problem::Problem;
-use crate::problem::recipes::{Anchors, Fairness, RECIPES, RecipeOptions};
+use crate::problem::recipes::{Anchors, Fairness, RECIPES, RecipeOptions, TAKE_LENGTH};
 use crate::solver::SolveOptions;
 
 /// Makes `op` the solver of a problem, whose JSON form `docs/problem.schema.json` states: everything in it is replaced,
@@ -79,9 +79,10 @@ pub struct shapeop_recipe_options {
     pub weight: f64,
     /// The weight that draws each point to where it was; 0 for none. Default 0.05.
     pub closeness: f64,
-    /// The weight of fairness; 0, the default, for none.
+    /// The weight of fairness; 0, the default, for none ("rationalize": for ten times the closeness).
     pub fairness: f64,
-    /// The length that "equalize" draws edges to, in model units; 0, the default: their mean. Other recipes refuse it.
+    /// In model units: the length that "equalize" draws edges to; 0, the default: their mean. The distance that "rationalize"
+    /// allows the diagonals of a quad; 0: planar quads. Other recipes refuse it.
     pub length: f64,
     /// The points that keep their place, `nb_anchors` indices. Default null.
     pub anchors: *const c_int,
@@ -131,8 +132,8 @@ pub unsafe extern "C" fn shapeop_defaultRecipeOptions(options: *mut shapeop_reci
 }
 
 /// The problem that a recipe makes of a mesh, as JSON for `shapeop_setProblem`: "planarize", "circularize", "smooth",
-/// "regularize" or "equalize" (`shapeop_recipeName`); null if it is refused. Its points are those of the mesh in their
-/// order. The text is the calling thread's own, valid until that thread's next call of this function or of
+/// "regularize", "equalize" or "rationalize" (`shapeop_recipeName`); null if it is refused. Its points are those of the mesh
+/// in their order. The text is the calling thread's own, valid until that thread's next call of this function or of
 /// `shapeop_problemText`.
 ///
 /// - `points`: `x0 y0 z0 x1 ...` in model units, `nb_points` points.
@@ -168,9 +169,9 @@ pub unsafe extern "C" fn shapeop_recipe(
         let recipe = named("name", &RECIPES, &name, "recipes")?;
         // SAFETY: the caller vouches for the anchors.
         let recipe_options = unsafe { recipe_options(&options)? };
-        let takes_length = name == "equalize";
-        if options.length != 0.0 && !takes_length {
-            let reason = format!("expected 0, as only \"equalize\" takes a length; found {}", options.length);
+        if options.length != 0.0 && !TAKE_LENGTH.contains(&&*name) {
+            let takers = TAKE_LENGTH.map(|name| format!("\"{name}\"")).join(" and ");
+            let reason = format!("expected 0, as only {takers} take a length; found {}", options.length);
             return Err(Error::new(Status::InvalidValue, reason).at("options->length"));
         }
         let length = (options.length != 0.0).then_some(options.length);

@@ -6,11 +6,14 @@
 //! and the same mesh in metres give the same result: `EdgeStrain`, whose own energy grows with the length and not with its
 //! square, gets its weight multiplied by `L²/L₀` (target over rest length), which makes its energy `½ w (‖e‖ − L)²`.
 //!
+//! [`rationalize`] is the exception: its goal is hard, met to the last digits whatever that moves, and the other weights say which of
+//! the shapes that meet it is taken.
+//!
 //! The points of the problem are those of the mesh in their order, its `faces` are those of the mesh.
 
 use glam::DVec3;
 
-use super::{Problem, Settings, Signature};
+use super::{Handle, Objective, Problem, Settings, Signature};
 use crate::error::{Error, Result, Status, finite};
 use crate::mesh::fit::regular_polygon;
 use crate::mesh::measure::{Spread, edge_lengths};
@@ -19,6 +22,16 @@ use crate::mesh::{Mesh, Topology};
 /// How much heavier than the heaviest other weight an anchor is: it then moves about a ten-thousandth of what it would
 /// move without, and the system stays far from the limits of an f64.
 const ANCHOR_FACTOR: f64 = 1e4;
+
+/// The same for anchors of [`rationalize`], which are handles: where faces that must be planar do not allow all of them to stay, an
+/// anchor that weighs more would only take more sweeps to give in.
+const HANDLE_FACTOR: f64 = 1e3;
+
+/// Fairness over closeness where [`rationalize`] is given no fairness: the ratio of Deng et al. 2015.
+const FAIR: f64 = 10.0;
+
+/// How exactly [`rationalize`] meets its constraints, over the bounding-box diagonal: 30 nanometres on a roof of 30 metres.
+const EXACT: f64 = 1e-9;
 
 /// The turn of the boundary, in radians (75 degrees), from which a boundary point counts as a corner: the corners of a
 /// patch of quads turn by about 90 degrees, the teeth of a boundary of hexagons by 60.
@@ -58,11 +71,12 @@ pub struct RecipeOptions {
     pub weight: f64,
     /// The weight that draws each point to where it was; 0.05 by default, 0 for none.
     pub closeness: f64,
-    /// The weight of fairness; 0 by default, for none.
+    /// The weight of fairness; 0 by default, for none (for [`rationalize`]: for ten times the closeness).
     pub fairness: f64,
     /// What fairness asks for.
     pub fairness_kind: Fairness,
-    /// The points that keep their place, by a `Closeness` 10⁴ times as heavy as the heaviest of the weights above.
+    /// The points that keep their place, by a `Closeness` 10⁴ times as heavy as the heaviest of the weights above; as handles in
+    /// [`rationalize`].
     pub anchors: Anchors,
 }
 
@@ -78,17 +92,21 @@ impl Default for RecipeOptions {
     }
 }
 
-/// A recipe: from a mesh, an edge length (that only [`equalize`] takes) and options to a problem.
+/// A recipe: from a mesh, a length (that only [`equalize`] and [`rationalize`] take) and options to a problem.
 pub type Recipe = fn(&Mesh, Option<f64>, &RecipeOptions) -> Result<Problem>;
 
 /// Every recipe with its name, for programs that let people choose.
-pub const RECIPES: [(&str, Recipe); 5] = [
+pub const RECIPES: [(&str, Recipe); 6] = [
     ("planarize", |mesh, _, options| planarize(mesh, options)),
     ("circularize", |mesh, _, options| circularize(mesh, options)),
     ("smooth", |mesh, _, options| smooth(mesh, options)),
     ("regularize", |mesh, _, options| regularize(mesh, options)),
     ("equalize", equalize),
+    ("rationalize", rationalize),
 ];
+
+/// The recipes that take a length.
+pub const TAKE_LENGTH: [&str; 2] = ["equalize", "rationalize"];
 
 /// Makes every face planar: a `Plane` per face. Triangles are planar as they are and get none.
 ///
@@ -146,12 +164,7 @@ pub fn regularize(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
 pub fn equalize(mesh: &Mesh, length: Option<f64>, options: &RecipeOptions) -> Result<Problem> {
     let mut draft = Draft::new(mesh, options)?;
     let rest_lengths = edge_lengths(mesh)?;
-    let length = length.unwrap_or_else(|| Spread::of(&rest_lengths).mean);
-    let is_length = length > 0.0 && length.is_finite();
-    if !is_length {
-        let reason = format!("expected a finite number above 0, found {length}");
-        return Err(Error::new(Status::InvalidValue, reason).at("length"));
-    }
+    let length = check_length(length.unwrap_or_else(|| Spread::of(&rest_lengths).mean))?;
     let edges = draft.topology.edges().to_vec();
     for (edge, rest_length) in edges.into_iter().zip(rest_lengths) {
         // Where the rest length is 0, EdgeStrain measures by the edited length instead.
@@ -161,6 +174,59 @@ pub fn equalize(mesh: &Mesh, length: Option<f64>, options: &RecipeOptions) -> Re
     }
     draft.problem.edges = draft.topology.edges().to_vec();
     draft.finish()
+}
+
+fn check_length(length: f64) -> Result<f64> {
+    if length > 0.0 && length.is_finite() {
+        return Ok(length);
+    }
+    let reason = format!("expected a finite number above 0, found {length}");
+    Err(Error::new(Status::InvalidValue, reason).at("length"))
+}
+
+/// Makes every face planar exactly, near the design and with fair moves: a hard `Plane` per face, none for triangles. With `length`
+/// a quad gets a hard `DiagonalDistance` instead: its diagonals, as lines, may be so far apart, in model units.
+///
+/// Of all shapes that meet this, the one is found for which [`RecipeOptions::closeness`] times the squares of the moves plus
+/// [`RecipeOptions::fairness`] times those of what fairness measures is least. Without fairness exact planarity leaves kinks, so 0 is
+/// ten times the closeness here. [`RecipeOptions::weight`] counts only where faces contradict each other, as their priority. Anchors
+/// are handles at their places, 10³ times as heavy as the heavier of the other weights: they give in where planar faces do not allow
+/// all of them.
+///
+/// # Errors
+/// As [`planarize`]; the closeness or `length` is not finite and above 0.
+pub fn rationalize(mesh: &Mesh, length: Option<f64>, options: &RecipeOptions) -> Result<Problem> {
+    let mut draft = Draft::new(mesh, options)?;
+    let closeness = options.closeness;
+    if closeness <= 0.0 {
+        let reason = format!("expected a number above 0, as it makes the result unique; found {closeness}");
+        return Err(Error::new(Status::InvalidValue, reason).at("closeness"));
+    }
+    let length = length.map(check_length).transpose()?;
+    for face in mesh.faces.iter().filter(|face| face.len() > 3) {
+        let (type_name, scalars) = match length {
+            Some(length) if face.len() == 4 => ("DiagonalDistance", Some(vec![length])),
+            _ => ("Plane", None),
+        };
+        let (type_name, indices, weight) = (type_name.to_owned(), face.clone(), options.weight);
+        draft.problem.constraints.push(Signature { type_name, indices, weight, scalars, hard: true });
+    }
+    let fairness = if options.fairness > 0.0 { options.fairness } else { FAIR * closeness };
+    let is_kept = options.fairness_kind == Fairness::KeepDetail;
+    if !is_kept {
+        draft.add_laplacians("Laplacian", fairness);
+    }
+    let anchors = (0..).zip(draft.anchors()?).filter(|(_, is_anchor)| *is_anchor);
+    let target = |point: u32| mesh.points[point as usize].to_array();
+    draft.problem.handles = anchors.map(|(point, _)| Handle { point, target: target(point) }).collect();
+    draft.problem.objective = Some(Objective {
+        handle_weight: HANDLE_FACTOR * closeness.max(fairness),
+        closeness_weight: closeness,
+        fairness_weight: if is_kept { fairness } else { 0.0 },
+        tolerance: EXACT,
+        ..Objective::default()
+    });
+    Ok(draft.problem)
 }
 
 /// The boundary points where the boundary turns by more than 75 degrees.

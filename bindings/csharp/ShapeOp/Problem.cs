@@ -72,7 +72,8 @@ namespace ShapeOp
         public bool IsSmoothing { get; set; }
 
         /// <summary>
-        /// The length that "equalize" draws edges to, in model units; 0: their mean. Other recipes refuse it.
+        /// In model units: the length that "equalize" draws edges to; 0: their mean. The distance that "rationalize" allows the
+        /// diagonals of a quad; 0: planar quads. Other recipes refuse it.
         /// </summary>
         public double Length { get; set; }
 

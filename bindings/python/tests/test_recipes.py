@@ -91,7 +91,7 @@ def test_options_reach_the_library() -> None:
             shapeop.ArgumentTypeError,
             "anchors: expected integers",
         ),
-        (lambda: shapeop.planarize(SQUARE, FACE, length=2), shapeop.Error, "length.*only .equalize. takes"),
+        (lambda: shapeop.planarize(SQUARE, FACE, length=2), shapeop.Error, "length.*only .equalize. and .rationalize. take"),
         (lambda: shapeop.equalize(SQUARE, FACE, length=-2), shapeop.Error, "length.*-2"),
         (lambda: shapeop.planarize(SQUARE, FACE, fairness_kind="x"), shapeop.ArgumentError, "keep-detail, smooth"),
         (lambda: shapeop.planarize(SQUARE, FACE, colour=1), TypeError, "colour"),  # type: ignore[call-arg]

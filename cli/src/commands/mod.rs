@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod demo;
+pub mod explore;
 pub mod recipe;
 pub mod solve;
 pub mod types;

@@ -5,12 +5,15 @@ use std::path::Path;
 use anyhow::Result;
 use serde_json::{Value, json};
 use shapeop::mesh::file::{Format, read_source};
+use shapeop::mesh::measure::{Spread, edge_lengths};
 use shapeop::mesh::{Mesh, Topology};
 use shapeop::problem::Problem;
 use shapeop::problem::recipes::{self, RecipeOptions};
+use shapeop::solver::Outcome;
 
 use crate::Ending;
 use crate::args::{Colour, OutputArgs, RecipeArgs};
+use crate::exploration::explained;
 use crate::output::{Output, say};
 use crate::picture::{Panel, Picture};
 use crate::report::{Report, Subject};
@@ -24,7 +27,13 @@ pub enum Recipe {
     Circularize,
     Smooth,
     Regularize,
-    Equalize { length: Option<f64> },
+    Equalize {
+        length: Option<f64>,
+    },
+    /// The distance of diagonals in percent of the mean edge; `None`: planar.
+    Rationalize {
+        diagonals: Option<f64>,
+    },
 }
 
 impl Recipe {
@@ -35,6 +44,7 @@ impl Recipe {
             Self::Smooth => "smooth",
             Self::Regularize => "regularize",
             Self::Equalize { .. } => "equalize",
+            Self::Rationalize { .. } => "rationalize",
         }
     }
 
@@ -45,13 +55,14 @@ impl Recipe {
             Self::Smooth => recipes::smooth(mesh, options),
             Self::Regularize => recipes::regularize(mesh, options),
             Self::Equalize { length } => recipes::equalize(mesh, length, options),
+            Self::Rationalize { diagonals } => recipes::rationalize(mesh, diagonal_distance(mesh, diagonals)?, options),
         }
     }
 
     /// What its picture shows.
     fn colour(self) -> Colour {
         match self {
-            Self::Planarize => Colour::Planarity,
+            Self::Planarize | Self::Rationalize { .. } => Colour::Planarity,
             Self::Circularize => Colour::Circularity,
             Self::Smooth => Colour::Displacement,
             Self::Regularize => Colour::Regularity,
@@ -60,7 +71,7 @@ impl Recipe {
     }
 
     /// What it was asked for, for the report.
-    fn options_in_report(self, options: &RecipeOptions) -> Value {
+    fn options_in_report(self, options: &RecipeOptions, mesh: &Mesh) -> shapeop::error::Result<Value> {
         let mut value = json!({
             "weight": options.weight,
             "closeness": options.closeness,
@@ -75,8 +86,17 @@ impl Recipe {
         if let Self::Equalize { length } = self {
             value["length"] = json!(length);
         }
-        value
+        if let Self::Rationalize { diagonals } = self {
+            value["diagonals"] = json!(diagonals.map(|percent| percent / 100.0));
+            value["length"] = json!(diagonal_distance(mesh, diagonals)?);
+        }
+        Ok(value)
     }
+}
+
+/// Percent of the mean edge as a length.
+fn diagonal_distance(mesh: &Mesh, percent: Option<f64>) -> shapeop::error::Result<Option<f64>> {
+    percent.map(|percent| Ok(percent / 100.0 * Spread::of(&edge_lengths(mesh)?).mean)).transpose()
 }
 
 pub fn run(recipe: Recipe, args: &RecipeArgs, is_quiet: bool) -> Result<Ending> {
@@ -139,7 +159,7 @@ pub fn carry_out(
         input: &job.input.display().to_string(),
         problem,
         settings,
-        options: job.recipe.options_in_report(&job.options),
+        options: job.recipe.options_in_report(&job.options, job.mesh)?,
         limit: output_args.limit / 100.0,
         before: job.mesh,
         after: &after,
@@ -149,7 +169,9 @@ pub fn carry_out(
     if output.wants_pictures() {
         output.picture("picture", &picture(job, output_args, &after, &report)?)?;
         let title = format!("{} of {}: {}", name, file_name(job.input), report.ending());
-        if let Some(svg) = plot::convergence(&title, &found.history, problem.mode, settings.tolerance)? {
+        if let Some(svg) =
+            plot::convergence(&title, &found.history, problem.mode, report.measure(), settings.tolerance)?
+        {
             output.picture("convergence", &svg)?;
         }
     }
@@ -166,15 +188,29 @@ pub fn tell(report: &Report, output: &Output, as_json: bool, is_quiet: bool) -> 
     if as_json {
         return say(report.to_json()?.trim_end());
     }
-    let constraints: Vec<String> = report.constraints.iter().map(|(name, count)| format!("{count} {name}")).collect();
+    let hard = |name: &String| match report.hard_constraints.get(name) {
+        None => String::new(),
+        Some(hard) if *hard == report.constraints[name] => " (hard)".to_owned(),
+        Some(hard) => format!(" ({hard} hard)"),
+    };
+    let counted = |(name, count): (&String, &usize)| format!("{count} {name}{}", hard(name));
+    let constraints: Vec<String> = report.constraints.iter().map(counted).collect();
     let Report { command, input, points, faces, .. } = report;
     let start = format!("{command} {input}: {points} points, {faces} faces; {}", constraints.join(", "));
     let (ending, table, files) = (report.ending(), table::of_report(report), output.in_lines());
-    say(&format!("{start}\n{ending}\n\n{table}\n\n{files}"))
+    let conflicts = match &report.exploration {
+        Some(exploration) if report.is_infeasible() => format!("\n\n{}", explained(&exploration.conflicts)),
+        _ => String::new(),
+    };
+    say(&format!("{start}\n{ending}{conflicts}\n\n{table}\n\n{files}"))
 }
 
 pub fn ending(found: &Run) -> Ending {
-    if found.was_interrupted { Ending::Interrupted } else { Ending::Done }
+    match found.report.outcome {
+        _ if found.was_interrupted => Ending::Interrupted,
+        Outcome::Infeasible => Ending::Infeasible,
+        _ => Ending::Done,
+    }
 }
 
 pub fn file_name(path: &Path) -> String {

@@ -45,7 +45,9 @@ pub fn run(args: &SolveArgs, is_quiet: bool) -> Result<Ending> {
     if output.wants_pictures() {
         output.picture("picture", &picture(args, &problem, &found, &before, &report)?)?;
         let title = format!("{}: {}", file_name(&args.problem), report.ending());
-        if let Some(svg) = plot::convergence(&title, &found.history, problem.mode, settings.tolerance)? {
+        if let Some(svg) =
+            plot::convergence(&title, &found.history, problem.mode, report.measure(), settings.tolerance)?
+        {
             output.picture("convergence", &svg)?;
         }
     }
@@ -59,7 +61,7 @@ fn what_to_show(problem: &Problem, rest: &[RestLength]) -> Colour {
     let count = |name: &str| problem.constraints.iter().filter(|constraint| constraint.type_name == name).count();
     let candidates = [
         (rest.len(), Colour::Strain),
-        (if problem.faces.is_empty() { 0 } else { count("Plane") }, Colour::Planarity),
+        (if problem.faces.is_empty() { 0 } else { count("Plane") + count("DiagonalDistance") }, Colour::Planarity),
         (if problem.faces.is_empty() { 0 } else { count("Circle") }, Colour::Circularity),
         (if problem.faces.is_empty() { 0 } else { count("Similarity") }, Colour::Regularity),
     ];

@@ -132,7 +132,7 @@ impl Engine {
 
     fn sweeps(&mut self, count: u32) {
         for _ in 0..count {
-            self.splitting.sweep(false);
+            self.sweep();
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
@@ -47,6 +48,12 @@ pub(super) struct Engine {
     pub(super) changes: u32,
     /// How often caps were raised.
     pub(super) raises: u32,
+    /// Sweeps in a row, over all calls, in which a multiplier was at its cap.
+    pub(super) capped_for: u32,
+    /// Where more than one thread pays: the pool.
+    pub(super) pool: Option<Arc<rayon::ThreadPool>>,
+    /// Seconds that the last judgement of the points took: a time budget has to leave them.
+    pub(super) judge_seconds: f64,
 }
 
 /// The largest distance of a constraint's points from its first.
@@ -96,17 +103,17 @@ impl Engine {
         let factorisations_before = self.splitting.factorisation_count;
         report.energy_before = self.objective_value();
         let has_budget = options.time_budget_seconds > 0.0;
-        let is_over = |started: &Instant| has_budget && started.elapsed().as_secs_f64() >= options.time_budget_seconds;
+        let sweeping_seconds = options.time_budget_seconds - self.judge_seconds;
+        let is_over = |started: &Instant| has_budget && started.elapsed().as_secs_f64() >= sweeping_seconds;
         // While a handle moves, frames come before digits.
         let may_finish = wants_finish && !(has_budget && explorer.has_new_targets);
         let (mut settled, mut next_finish, mut least, mut idle) = (0, SETTLED, f64::INFINITY, 0);
-        let mut capped_for = 0;
         let follows = solver.forces.has_forces_on_faces();
         while found.sweeps < options.max_iterations {
             if follows {
                 self.take_forces(solver, &solver.points);
             }
-            let sweep = self.splitting.sweep(false);
+            let sweep = self.sweep();
             found.sweeps += 1;
             solver.points.copy_from_slice(&self.splitting.points);
             report.largest_move = sweep.largest_move / self.size;
@@ -157,9 +164,13 @@ impl Engine {
                 report.outcome = Outcome::Converged;
                 break;
             }
-            capped_for = if sweep.capped > 0 { capped_for + 1 } else { 0 };
-            if capped_for >= conflicts::PATIENCE && sweep.primal > self.tolerance * self.size {
-                capped_for = 0;
+            self.capped_for = if sweep.capped > 0 { self.capped_for + 1 } else { 0 };
+            let is_stuck = self.capped_for >= conflicts::PATIENCE;
+            if is_stuck {
+                self.capped_for = 0;
+            }
+            // Sweeps at rest with multipliers at their caps leave no residual, but a violation.
+            if is_stuck && self.is_violated() {
                 if self.raise_caps() {
                     self.splitting.set_penalty(2.0 * self.splitting.penalty, &solver.constraints, false)?;
                 } else if may_finish {
@@ -171,12 +182,16 @@ impl Engine {
             }
             self.balance(&mut idle, found.sweeps, solver)?;
         }
+        let judging = Instant::now();
         self.judge(&mut found);
         found.factorisations += self.splitting.factorisation_count - factorisations_before;
         report.iterations = found.sweeps;
         report.evaluations = found.sweeps + found.newton_steps;
-        report.energy_after = self.objective_value();
+        let ObjectiveTerms { handles, closeness, fairness, soft } = found.terms;
+        let work = self.splitting.quadratic.work(&self.splitting.points);
+        report.energy_after = handles + closeness + fairness + soft - work;
         report.factorisation_count = found.factorisations;
+        self.judge_seconds = judging.elapsed().as_secs_f64();
         Ok((report, found))
     }
 
@@ -188,6 +203,21 @@ impl Engine {
         let changed = self.splitting.quadratic.set_forces(&forces);
         self.splitting.quadratic_changed();
         changed
+    }
+
+    /// One sweep, on the pool if there is one.
+    pub(super) fn sweep(&mut self) -> Sweep {
+        let splitting = &mut self.splitting;
+        match &self.pool {
+            Some(pool) => pool.install(|| splitting.sweep(true)),
+            None => splitting.sweep(false),
+        }
+    }
+
+    /// True if a hard constraint is further from its set than the tolerance.
+    fn is_violated(&mut self) -> bool {
+        let bound = self.tolerance * self.size;
+        distances(&mut self.splitting.hard, &self.splitting.points).into_iter().any(|distance| distance > bound)
     }
 
     /// True if sweeps alone came to rest.
@@ -218,9 +248,14 @@ impl Engine {
         let mut goes_on =
             || options.time_budget_seconds == 0.0 || started.elapsed().as_secs_f64() < options.time_budget_seconds;
         let (tolerance, mut kept) = (self.tolerance, std::mem::take(&mut self.kept));
+        let pool = self.pool.clone();
         let mut finish = self.finish_of();
         let before = finish.residuals(&points, &u);
-        let finished = finish.run(&points, &u, tolerance, &mut kept, &mut goes_on);
+        let mut run = || finish.run(&points, &u, tolerance, &mut kept, &mut goes_on);
+        let finished = match pool {
+            Some(pool) => pool.install(run),
+            None => run(),
+        };
         self.kept = kept;
         let Finished { points, u, penalty, residuals, steps, factorisations, capped } = finished?;
         found.newton_steps += steps;
@@ -245,7 +280,7 @@ impl Engine {
             penalty: finish::penalty_behind(splitting.penalty),
             size: self.size,
             force: self.force,
-            is_parallel: false,
+            is_parallel: self.pool.is_some(),
         }
     }
 
@@ -259,8 +294,14 @@ impl Engine {
     /// Computes afresh what the points are worth.
     fn judge(&mut self, found: &mut Found) {
         let (points, u) = (self.splitting.points.clone(), self.finish_multipliers());
+        let pool = self.pool.clone();
         let mut finish = self.finish_of();
-        let residuals = finish.residuals(&points, &u);
+        let mut residuals = || finish.residuals(&points, &u);
+        let residuals = match pool {
+            Some(pool) => pool.install(residuals),
+            None => residuals(),
+        };
+        let finish = self.finish_of();
         found.capped = finish.capped(&u);
         found.is_solution = residuals.are_within(10.0 * self.tolerance, self.size) && found.capped == 0;
         found.residuals = Some(residuals);

@@ -133,7 +133,7 @@ impl Finish<'_> {
         u: &[DVec3],
         tolerance: f64,
         kept: &mut Kept,
-        goes_on: &mut dyn FnMut() -> bool,
+        goes_on: &mut (dyn FnMut() -> bool + Send),
     ) -> Result<Finished> {
         let mut state = self.state(points.to_vec(), u.to_vec());
         let (mut steps, mut factorisations) = (0, 0);

@@ -29,7 +29,7 @@ use self::engine::{Engine, Memory, distances, extent};
 use self::finish::Kept;
 use self::quadratic::Quadratic;
 use self::splitting::Splitting;
-use super::{ProgressFn, Report, SolveOptions, Solver};
+use super::{PARALLEL_POINTS, ProgressFn, Report, SolveOptions, Solver};
 use crate::constraints::ConstraintId;
 use crate::error::{Error, Result, Status, finite};
 use crate::problem::{FairnessRows, Mode, Objective};
@@ -216,6 +216,8 @@ impl Solver {
         let mut explorer = std::mem::take(&mut self.explorer);
         let start = self.points.clone();
         let result = explorer.prepare(self).and_then(|mut engine| {
+            let is_long = self.thread_count != 1 && self.points.len() >= PARALLEL_POINTS;
+            engine.pool = if is_long { self.pool() } else { None };
             let result = engine.run(self, &explorer, options, wants_finish, started, progress);
             explorer.memory.take(&engine);
             explorer.engine = Some(engine);
@@ -319,6 +321,9 @@ impl Explorer {
             tolerance: objective.tolerance,
             changes: 0,
             raises: 0,
+            capped_for: 0,
+            pool: None,
+            judge_seconds: 0.0,
         })
     }
 }

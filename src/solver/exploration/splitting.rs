@@ -23,7 +23,7 @@ use crate::error::Result;
 use crate::linalg::cholesky::{Analysis, Factor};
 use crate::linalg::symmetric::SymmetricMatrix;
 use crate::solver::anderson::Anderson;
-use crate::solver::assembly::{each_entry, long_constraint_count};
+use crate::solver::assembly::{each_entry, even_bounds, long_constraint_count};
 use crate::solver::history::{Combination, History};
 use crate::solver::parallel::for_parts;
 
@@ -87,6 +87,8 @@ pub(super) struct Splitting {
     constant: Vec<DVec3>,
     right_hand_side: Vec<DVec3>,
     sums: Vec<DVec3>,
+    /// Where the chunks of points begin, and their number.
+    point_bounds: Vec<usize>,
     accelerated: Accelerated,
     pub(super) factorisation_count: u32,
 }
@@ -146,6 +148,7 @@ impl Splitting {
             constant: vec![DVec3::ZERO; unknown_count],
             right_hand_side: vec![DVec3::ZERO; unknown_count],
             sums: vec![DVec3::ZERO; n],
+            point_bounds: even_bounds(n),
             accelerated: Accelerated::default(),
             factorisation_count: 1,
             quadratic,
@@ -227,7 +230,9 @@ impl Splitting {
         self.right_hand_side.copy_from_slice(&self.constant);
         for (targets, local, factor) in [(&self.soft.targets, &self.soft, 1.0), (&self.rows, &self.hard, self.penalty)]
         {
-            local.gather.sum(0, targets, &mut self.sums);
+            let bounds = &self.point_bounds;
+            let sum = |chunk: usize, sums: &mut [DVec3], (): &mut ()| local.gather.sum(bounds[chunk], targets, sums);
+            for_parts(bounds, &mut self.sums, &mut vec![(); bounds.len() - 1], is_parallel, &sum);
             let sums = self.right_hand_side[..n].iter_mut().zip(&self.sums);
             sums.for_each(|(total, sum)| *total += factor * *sum);
         }

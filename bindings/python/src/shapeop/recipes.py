@@ -83,11 +83,12 @@ class Recipe:
         point indices, or an (m, k) array. It stays as it is.
         ``weight``: of the recipe's own constraints; 1 by default.
         ``closeness``: the weight that draws each point to where it was; 0.05 by default, 0 for none.
-        ``fairness``: a weight at every point; 0 by default. ``fairness_kind``: "keep-detail" or "smooth".
+        ``fairness``: a weight at every point; 0 by default, for none (``rationalize``: for ten times the closeness).
+        ``fairness_kind``: "keep-detail" or "smooth".
         ``anchors``: points that keep their place: indices, or vertex keys of a COMPAS mesh. ``anchor_boundary``: all
         points of the boundary too. ``anchor_corners``: those where the boundary turns by more than 75 degrees.
-        ``length``: the length that edges are drawn to, in model units, for the recipe that equalises them; by default
-        the mean.
+        ``length``, in model units: for ``equalize`` the length that edges are drawn to, by default the mean; for
+        ``rationalize`` the distance that the diagonals of a quad may have, by default none: quads are planar.
         ``max_iterations``, ``tolerance``, ``time_budget_seconds``, ``progress``: see :meth:`Solver.solve_until`.
 
         Raises :class:`Error` for what the library refuses, :class:`ArgumentError` or :class:`ArgumentTypeError` for
