@@ -333,13 +333,13 @@ class Hard(Running):
     def test_handles_of_unlike_strengths_stay_soft_constraints_of_their_own(self):
         line, component = points([0, 0, 0, 1, 0, 0]), self.canvas.add("ShapeOpHandles")
         edge = signature(self.canvas, "EdgeLength", [[0, 1]], [1.0], [[1.0, 1.0]], Hard=True)
-        ends = [LineCurve(Point3d(0, 0, 0), Point3d(-4, 0, 0)), LineCurve(Point3d(1, 0, 0), Point3d(1, 0, 0))]
+        ends = [LineCurve(Point3d(0, 0, 0), Point3d(-0.5, 0, 0)), LineCurve(Point3d(1, 0, 0), Point3d(1, 0, 0))]
         handles = component.run(Points=line, Handles=ends, Strength=[3.0, 1.0])["ConstraintSigs"]
         with Calls() as calls:
             result = self.settle(edge + handles, Points=tree(line))
             self.assertEqual((calls["shapeop_setHandle"], calls["shapeop_addConstraints"]), (0, 2))
-        # 3 (t + 4)^2 + t^2 and the library's closeness of both points: t (3 + 1 + 0.2) = -12.
-        self.assertAlmostEqual(self.where(result)[0], -12 / 4.2, 6)
+        # 3 (t + 0.5)^2 + t^2 and the library's closeness of both points: t (3 + 1 + 0.2) = -1.5.
+        self.assertAlmostEqual(self.where(result)[0], -1.5 / 4.2, 6)
 
     def test_hard_constraints_come_and_go_with_a_fresh_start_and_change_on_the_way(self):
         some = [signature(self.canvas, "Closeness", self.each[:5], [weight]) for weight in (0.1, 5.0)]

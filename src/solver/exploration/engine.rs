@@ -48,8 +48,6 @@ pub(super) struct Engine {
     pub(super) changes: u32,
     /// How often caps were raised.
     pub(super) raises: u32,
-    /// Sweeps in a row, over all calls, in which a multiplier was at its cap.
-    pub(super) capped_for: u32,
     /// Where more than one thread pays: the pool.
     pub(super) pool: Option<Arc<rayon::ThreadPool>>,
     /// Seconds that the last judgement of the points took: a time budget has to leave them.
@@ -108,6 +106,7 @@ impl Engine {
         // While a handle moves, frames come before digits.
         let may_finish = wants_finish && !(has_budget && explorer.has_new_targets);
         let (mut settled, mut next_finish, mut least, mut idle) = (0, SETTLED, f64::INFINITY, 0);
+        let mut capped_for = 0;
         let follows = solver.forces.has_forces_on_faces();
         while found.sweeps < options.max_iterations {
             if follows {
@@ -164,10 +163,10 @@ impl Engine {
                 report.outcome = Outcome::Converged;
                 break;
             }
-            self.capped_for = if sweep.capped > 0 { self.capped_for + 1 } else { 0 };
-            let is_stuck = self.capped_for >= conflicts::PATIENCE;
+            capped_for = if sweep.capped > 0 { capped_for + 1 } else { 0 };
+            let is_stuck = capped_for >= conflicts::PATIENCE;
             if is_stuck {
-                self.capped_for = 0;
+                capped_for = 0;
             }
             // Sweeps at rest with multipliers at their caps leave no residual, but a violation.
             if is_stuck && self.is_violated() {

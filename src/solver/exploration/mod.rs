@@ -321,7 +321,6 @@ impl Explorer {
             tolerance: objective.tolerance,
             changes: 0,
             raises: 0,
-            capped_for: 0,
             pool: None,
             judge_seconds: 0.0,
         })
