@@ -142,6 +142,49 @@ fn with_closeness_alone_a_hard_plane_is_the_best_fit_plane() {
 }
 
 #[test]
+fn sweeps_at_a_solution_stay_there_however_many_they_are() {
+    // So few rows that sweeps come to rest to the last bit, where nothing changes any more.
+    let points = [[0.0, 0.0, 0.1], [1.0, 0.0, -0.1], [1.0, 1.0, 0.1], [0.0, 1.0, -0.1]].map(DVec3::from).to_vec();
+    let mesh = Mesh { points, faces: vec![vec![0, 1, 2, 3]] };
+    let mut solver = solver_of(&mesh, &Objective { fairness_weight: 0.0, ..Objective::default() });
+    on_faces(&mut solver, &mesh, "Plane", &[], true);
+    solver.init().unwrap();
+    solver.solve(2000).unwrap();
+    assert!(solver.points().iter().all(|point| point.z.abs() < 1e-12), "{:?}", solver.points());
+    // An edge that a moved handle takes along: 3 (t - 1)² + t² is least at t = 3/4.
+    let mut solver = Solver::new();
+    solver.set_points(&[DVec3::ZERO, DVec3::X]).unwrap();
+    let edge = solver.add_constraint("EdgeLength", &[0, 1], 1.0).unwrap();
+    solver.edit_constraint("EdgeLength", edge, &[1.0, 1.0]).unwrap();
+    solver.set_hard(&[edge], true).unwrap();
+    let objective =
+        Objective { handle_weight: 3.0, closeness_weight: 1.0, fairness_weight: 0.0, ..Objective::default() };
+    solver.set_objective(&objective, FairnessRows::default()).unwrap();
+    solver.set_handle(1, DVec3::X).unwrap();
+    solver.init().unwrap();
+    solver.solve(2000).unwrap();
+    solver.set_handle(1, 2.0 * DVec3::X).unwrap();
+    solver.solve(2000).unwrap();
+    assert!(solver.points()[0].distance(0.75 * DVec3::X) < 1e-9, "{}", solver.points()[0]);
+}
+
+#[test]
+fn two_lengths_of_one_edge_contradict_each_other_even_where_there_is_nothing_else() {
+    let mut solver = Solver::new();
+    solver.set_points(&[DVec3::ZERO, DVec3::X]).unwrap();
+    let ids = [(1.0, 2.0), (3.0, 1.0)].map(|(length, priority)| {
+        let id = solver.add_constraint("EdgeLength", &[0, 1], priority).unwrap();
+        solver.edit_constraint("EdgeLength", id, &[length, length]).unwrap();
+        id
+    });
+    solver.set_hard(&ids, true).unwrap();
+    solver.init().unwrap();
+    assert_eq!(solve(&mut solver).outcome, Outcome::Infeasible);
+    let conflicts = &solver.found().unwrap().conflicts;
+    assert!(conflicts.len() == 1 && ids.contains(&conflicts[0]), "{conflicts:?}");
+}
+
+#[test]
 fn one_of_two_lengths_of_an_edge_is_named_and_the_others_are_met() {
     let mesh = translation_surface(9).unwrap();
     let edge = mean_edge(&mesh);

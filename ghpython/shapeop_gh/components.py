@@ -28,11 +28,12 @@ def anchors_indexer(component, mesh, anchors):
     return host.tree(int, found), host.tree(Point3d, [(i, [end]) for i, (_, end) in enumerate(ends)])
 
 
-def constraint_signature(component, constraint_type, indices, weights, scalars):
+def constraint_signature(component, constraint_type, indices, weights, scalars, hard):
     indices, weights = host.lists(indices, "PointIndices"), host.items(weights)
     if not constraint_type or not indices or not weights:
         return []
-    return [plain.make(constraint_type, indices, weights, host.lists(scalars, "Scalars"))]
+    role = plain.HARD if hard else plain.SOFT
+    return [plain.make(constraint_type, indices, weights, host.lists(scalars, "Scalars"), role)]
 
 
 def settings_static(component, iterations):
@@ -76,12 +77,12 @@ def live_solver(component, signatures, points, forces, settings, threshold, tole
     sent, given = host.branches(signatures), host.branches(points)
     flat, point_count = _flat(sent), len(_flat(given))
     if not flat or not point_count:
-        return (None,) * 6
+        return (None,) * 7
     component.Message = None
     settings, forces = live.read(settings, host.items(forces))
     reset = bool(reset) or settings["reset"]
     paused = not _is_on(on) or settings["pause"]
-    made_with = (point_count, tolerance, _is_on(accelerate))
+    made_with = (point_count, tolerance, _is_on(accelerate), plain.are_hard(flat))
     state = states.get(component)
     if reset or state is None or state.made_with != made_with:
         states.drop(component)
@@ -89,10 +90,13 @@ def live_solver(component, signatures, points, forces, settings, threshold, tole
         states.put(component, state)
     state.session.update(flat, forces, settings)
     if not reset and not paused:
-        state.tick(settings["iterations"], settings["dynamic"], threshold)
+        if state.is_exploring:
+            state.explore(threshold)
+        else:
+            state.tick(settings["iterations"], settings["dynamic"], threshold)
         if not state.has_stopped:
             host.again(component)
-    component.Message = "Reset" if reset else "Paused" if paused else "Stopped" if state.has_stopped else "Running"
+    component.Message = "Reset" if reset else "Paused" if paused else _how_it_goes(state)
     return (
         _like(given, state.coordinates),
         state.iterations,
@@ -100,7 +104,12 @@ def live_solver(component, signatures, points, forces, settings, threshold, tole
         _violations(sent, state.session.violations()),
         state.mean_move,
         state.has_stopped,
+        _conflicts(sent, state.session.conflicts()),
     )
+
+
+def _how_it_goes(state):
+    return "In conflict" if state.is_in_conflict else "Stopped" if state.has_stopped else "Running"
 
 
 def one_shot_solver(component, signatures, points, forces, tolerance, max_iterations, precision, seconds):
@@ -109,11 +118,12 @@ def one_shot_solver(component, signatures, points, forces, tolerance, max_iterat
     sent, given = host.branches(signatures), host.branches(points)
     flat, coordinates = _flat(sent), plain.coordinates(_flat(given))
     if not flat or not coordinates:
-        return (None,) * 5
-    solved, iterations, energy, violations, outcome = live.solve_to_the_end(
+        return (None,) * 6
+    solved, iterations, energy, violations, conflicts, outcome = live.solve_to_the_end(
         coordinates, flat, host.items(forces), tolerance, max_iterations, precision, seconds
     )
-    return _like(given, solved), iterations, energy, _violations(sent, violations), outcome
+    violations, conflicts = _violations(sent, violations), _conflicts(sent, conflicts)
+    return _like(given, solved), iterations, energy, violations, outcome, conflicts
 
 
 # What goes into them.
@@ -135,7 +145,7 @@ def handles(component, points, handles, strength, reset):
         states.put(component, grabbed)
     weights = host.items(strength) or [1000.0]
     targets = [plain.xyz(end, "Handles") for _, end in ends]
-    made = plain.make("Closeness", [[i] for i in grabbed.indices], weights, targets)
+    made = plain.make("Closeness", [[i] for i in grabbed.indices], weights, targets, plain.HANDLES)
     return [made], host.tree(int, [(n, [i]) for n, i in enumerate(grabbed.indices)])
 
 
@@ -222,6 +232,12 @@ def _violations(branches, per_signature):
     """Branch {path; i}: the violations of the signature `i` in the branch `path`, one per constraint, in order."""
     paths = [path.AppendElement(i) for path, branch in branches for i in range(len(branch))]
     return host.tree(float, zip(paths, per_signature))
+
+
+def _conflicts(branches, per_signature):
+    """Branch {path; i}: which constraints of the signature `i` in the branch `path` are in conflict."""
+    paths = [path.AppendElement(i) for path, branch in branches for i in range(len(branch))]
+    return host.tree(int, zip(paths, per_signature))
 
 
 def _per_branch(item_type, branches, values):

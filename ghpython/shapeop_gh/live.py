@@ -13,6 +13,13 @@ ITERATIONS = 10
 # under a thousandth of a pixel on a screen that the model fills.
 RELATIVE_THRESHOLD = 1e-7
 
+# Where constraints are hard, a tick solves until it is done, but no longer than that many seconds. As long as nothing
+# changes the next one has twice the time, up to the second number, as contradictions are found within one call alone.
+TICK_SECONDS, MOST_SECONDS = 0.1, 1.6
+
+# Sweeps of such a tick at most: more than the time allows.
+MOST_SWEEPS = 1000000
+
 # The defaults of the one-shot solver.
 MAX_ITERATIONS, PRECISION = 1000, 1e-6
 
@@ -21,10 +28,12 @@ class Live(object):
     """A session that is solved a few iterations at a time."""
 
     def __init__(self, coordinates, made_with):
-        """`made_with`: the number of points, the tolerance of merging, and whether iterations are accelerated. Anything
-        else can change while it runs."""
+        """`made_with`: the number of points, the tolerance of merging, whether iterations are accelerated, and whether
+        there are hard constraints. Anything else can change while it runs."""
         self.made_with = made_with
-        _, tolerance, is_accelerated = made_with
+        _, tolerance, is_accelerated, self.is_exploring = made_with
+        self.seconds = TICK_SECONDS
+        self.is_in_conflict = False
         self.threshold = RELATIVE_THRESHOLD * _diagonal(coordinates)
         self.session = Session(coordinates, tolerance)
         self.coordinates = coordinates  # where the points are
@@ -37,6 +46,20 @@ class Live(object):
     def delete(self):
         self.session.delete()
 
+    def explore(self, threshold):
+        """Solves until hard constraints are met or found to contradict each other, or the time of a tick is over."""
+        abi = library.declarations()
+        if self.session.has_changed:
+            self.seconds = TICK_SECONDS
+        report = self.session.solver.solve_until(MOST_SWEEPS, PRECISION, self.seconds)
+        before, self.coordinates = self.coordinates, self.session.points()
+        self.iterations += report.iterations
+        self.mean_move = _mean_move(before, self.coordinates) / max(report.iterations, 1)
+        self.is_in_conflict = report.outcome == abi.SO_OUTCOME_INFEASIBLE
+        is_at_rest = self.seconds >= MOST_SECONDS and self._is_below(threshold)
+        self.has_stopped = report.outcome != abi.SO_OUTCOME_TIME_BUDGET or is_at_rest
+        self.seconds = min(2 * self.seconds, MOST_SECONDS)
+
     def tick(self, iterations, dynamic, threshold):
         """Solves `iterations` iterations, or one time step, and finds out whether the points still move."""
         iterations = whole_number(iterations, "Iterations")
@@ -46,7 +69,10 @@ class Live(object):
         before, self.coordinates = self.coordinates, self.session.points()
         self.iterations += iterations
         self.mean_move = _mean_move(before, self.coordinates) / (1 if dynamic else iterations)
-        self.has_stopped = self.mean_move < (self.threshold if threshold is None else threshold)
+        self.has_stopped = self._is_below(threshold)
+
+    def _is_below(self, threshold):
+        return self.mean_move < (self.threshold if threshold is None else threshold)
 
 
 def read(settings, forces):
@@ -60,7 +86,7 @@ def read(settings, forces):
 
 
 def solve_to_the_end(coordinates, signatures, forces, tolerance, max_iterations, precision, seconds):
-    """(points, iterations, energy, violations per signature, outcome in words); the solver is freed."""
+    """(points, iterations, energy, violations and conflicts per signature, outcome in words); the solver is freed."""
     session = Session(coordinates, tolerance)
     try:
         session.update(signatures, forces, {"dynamic": False, "mass": 1.0})
@@ -69,7 +95,8 @@ def solve_to_the_end(coordinates, signatures, forces, tolerance, max_iterations,
             PRECISION if precision is None else precision,
             seconds or 0.0,
         )
-        return session.points(), report.iterations, report.energy_after, session.violations(), _outcome(report.outcome)
+        found = session.violations(), session.conflicts()
+        return (session.points(), report.iterations, report.energy_after) + found + (_outcome(report.outcome),)
     finally:
         session.delete()
 

@@ -1,7 +1,8 @@
 """The published client's solver: what it calls, in its order.
 
 Reset: create, add, edit, force, init. Every further tick, a paused one too: edit, solve, read. Static: all of it in
-one call. Constraints that had no scalars at the reset are not edited later; weights count at the reset.
+one call. Constraints that had no scalars at the reset are not edited later; weights count at the reset, and so does
+which constraints are hard: of those the published client knew nothing.
 """
 
 from shapeop_gh import signatures as plain
@@ -25,11 +26,13 @@ class Published(object):
             raise
 
     def _add(self, played):
-        for place, (type_name, index_lists, weights, scalars) in enumerate(played):
+        for place, (type_name, index_lists, weights, scalars, role) in enumerate(played):
             with plain.blamed(place, type_name):
                 ids = self.solver.add(type_name, index_lists, weights) if index_lists else []
                 if scalars:
                     self.solver.edit(type_name, ids, scalars)
+                if role == plain.HARD:
+                    self.solver.set_hard(ids, True)
             self.constraint_count += len(ids)
             if scalars:
                 self._editable.append([place, ids, scalars])
@@ -61,7 +64,7 @@ class Published(object):
     def _edit(self, played):
         for editable in self._editable:
             place, ids, in_force = editable
-            type_name, _, _, scalars = played[place] if place < len(played) else ("", None, None, [])
+            type_name, _, _, scalars, _ = played[place] if place < len(played) else ("", None, None, [], None)
             if len(scalars) != len(ids):
                 raise ShapeOpError(
                     "ConstraintSigs: item %d: %d lists of scalars expected, as at the last Reset, found %d: Reset "

@@ -1,7 +1,8 @@
 """Signatures, settings and forces: plain dicts and lists that travel between components.
 
 A constraint signature says what one ConstraintSignature component makes, many constraints of one type:
-{"type": str, "pointIndices": [[int]], "weights": [float], "scalars": [[float]] or []}, one entry per constraint.
+{"type": str, "pointIndices": [[int]], "weights": [float], "scalars": [[float]] or []}, one entry per constraint. Where
+they are to be met exactly, it has "hard": True; where a Handles component made it, "handles": True.
 """
 
 from contextlib import contextmanager
@@ -11,35 +12,52 @@ from shapeop_gh.errors import ShapeOpError
 # The published client's help calls the type so.
 ALIASES = {"AngleConstraint": "Angle"}
 
+# What the constraints of a signature are to a solver: a compromise by weight, exact, or handles.
+SOFT, HARD, HANDLES = "soft", "hard", "handles"
 
-def make(type_name, index_lists, weights, scalar_lists):
+
+def make(type_name, index_lists, weights, scalar_lists, role=SOFT):
     """A signature. One weight, or one list of scalars, is repeated for all constraints; points count as x y z."""
     count = len(index_lists)
     indices = [[_whole(i, "PointIndices", n) for i in branch] for n, branch in enumerate(index_lists)]
     weights = [_number(w, "Weights", n) for n, w in enumerate(weights)]
     scalars = [_numbers(branch, "Scalars", n) for n, branch in enumerate(scalar_lists)]
-    return {
+    made = {
         "type": type_name.strip(),
         "pointIndices": indices,
         "weights": _for_all(weights, count, "Weights", "weight"),
         "scalars": [list(s) for s in _for_all(scalars, count, "Scalars", "list of scalars")] if scalars else [],
     }
+    if role != SOFT:
+        made[role] = True
+    return made
+
+
+def are_hard(signatures):
+    """Whether a constraint of the signatures is to be met exactly."""
+    return any(isinstance(s, dict) and _role(s) == HARD for s in signatures)
+
+
+def _role(signature):
+    return HARD if signature.get(HARD) else HANDLES if signature.get(HANDLES) else SOFT
 
 
 def read(signatures):
-    """The signatures as (type, index lists, weights, scalar lists): checked, copied, the type by its library name."""
+    """The signatures as (type, index lists, weights, scalar lists, role): checked, copied, the type by its library
+    name."""
     played = []
     for place, signature in enumerate(signatures):
         where = "ConstraintSigs: item %d" % place
         try:
             type_name = signature["type"].strip()
             made = make(type_name, signature["pointIndices"], signature["weights"], signature["scalars"])
+            role = _role(signature)
         except (TypeError, KeyError, AttributeError, IndexError):
             raise ShapeOpError("%s: a constraint signature expected, found %r" % (where, signature))
         except ShapeOpError as error:
             raise ShapeOpError("%s: %s" % (where, error))
         type_name = ALIASES.get(type_name, type_name)
-        played.append((type_name, made["pointIndices"], made["weights"], made["scalars"]))
+        played.append((type_name, made["pointIndices"], made["weights"], made["scalars"], role))
     return played
 
 
@@ -55,12 +73,12 @@ def blamed(place, type_name):
 def copied(signatures):
     """A copy that later changes of the signatures do not reach."""
     return [
-        {
-            "type": s["type"],
-            "pointIndices": [list(indices) for indices in s["pointIndices"]],
-            "weights": list(s["weights"]),
-            "scalars": [list(scalars) for scalars in s["scalars"]],
-        }
+        dict(
+            s,
+            pointIndices=[list(indices) for indices in s["pointIndices"]],
+            weights=list(s["weights"]),
+            scalars=[list(scalars) for scalars in s["scalars"]],
+        )
         for s in signatures
     ]
 

@@ -75,6 +75,38 @@ class Solver(object):
     def remove(self, constraint_id):
         self._check(self._library.shapeop_removeConstraint(self._handle, constraint_id))
 
+    def set_hard(self, ids, is_hard):
+        """Makes constraints hard, to be met exactly, or soft."""
+        for constraint in ids:
+            self._check(self._library.shapeop_setHard(self._handle, constraint, int(is_hard)))
+
+    def set_handle(self, point, target):
+        """Makes a point a handle, drawn to `target` (x y z), or moves its target."""
+        self._check(self._library.shapeop_setHandle(self._handle, point, native.doubles(target, "Handles")))
+
+    def release_handle(self, point):
+        self._check(self._library.shapeop_releaseHandle(self._handle, point))
+
+    def set_handle_weight(self, weight):
+        """Sets the weight of all handles; the other weights of the objective are the library's defaults."""
+        abi = native.declarations()
+        objective = abi.shapeop_objective()
+        objective.struct_size = ctypes.sizeof(abi.shapeop_objective)
+        self._check(self._library.shapeop_defaultObjective(ctypes.byref(objective)))
+        objective.handle_weight = native.doubles([weight], "Strength")[0]
+        self._check(self._library.shapeop_setObjective(self._handle, ctypes.byref(objective)))
+
+    def conflicts(self):
+        """The ids of the hard constraints that contradict each other, as far as the last solve found any."""
+        count = self._library.shapeop_getConflicts(self._handle, None, 0)
+        if count <= 0:
+            self._check_text()
+            return []
+        ids = (ctypes.c_int * count)()
+        self._library.shapeop_getConflicts(self._handle, ids, count)
+        self._check_text()
+        return ids[:]
+
     def add_force(self, force, index):
         """A force on the point `index`, or on every point if it is None. Returns the force's id."""
         vector = native.doubles(force, "Force")

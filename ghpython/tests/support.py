@@ -51,6 +51,7 @@ class Component(object):
         self.inputs = [p["name"] for p in self.metadata["ghpython"]["inputParameters"]]
         self.outputs = [p["name"] for p in self.metadata["ghpython"]["outputParameters"]]
         self.component = GH_Component()
+        self.missing = ()  # ports that this one does not have, as one whose code alone was replaced
         canvas.document.AddObject(self.component, False)
 
     def run(self, **inputs):
@@ -58,7 +59,7 @@ class Component(object):
         assert set(inputs) <= set(self.inputs), inputs
         self.component.ClearRuntimeMessages()
         scope = {"__name__": "__main__", "ghenv": _Environment(self.component)}
-        scope.update((name, inputs.get(name)) for name in self.inputs)
+        scope.update((name, inputs.get(name)) for name in self.inputs if name not in self.missing)
         _execute(self.code, scope)
         return dict((name, scope[name]) for name in self.outputs)
 
@@ -128,10 +129,14 @@ def grid(columns, rows, height=lambda i, j: 0.0):
     return mesh
 
 
-def signature(canvas, constraint_type, indices, weights=(1.0,), scalars=()):
+def signature(canvas, constraint_type, indices, weights=(1.0,), scalars=(), **others):
     """The output of a ConstraintSignature component."""
     made = canvas.add("ShapeOpConstraintSignature").run(
-        ConstraintType=constraint_type, PointIndices=tree(*indices), Weights=list(weights), Scalars=tree(*scalars)
+        ConstraintType=constraint_type,
+        PointIndices=tree(*indices),
+        Weights=list(weights),
+        Scalars=tree(*scalars),
+        **others
     )
     return made["ConstraintSigs"]
 

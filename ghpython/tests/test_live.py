@@ -30,8 +30,7 @@ class Case(unittest.TestCase):
         return signature(self.canvas, "Closeness", self.each, [weight])
 
 
-@unittest.skipIf(IS_JYTHON, NEEDS_CTYPES)
-class Live(Case):
+class Running(Case):
     def setUp(self):
         Case.setUp(self)
         self.solver = self.canvas.add("ShapeOpLiveSolver")
@@ -55,6 +54,9 @@ class Live(Case):
     def where(self, result):
         return flat([p for _, branch in plain(result["Points"]) for p in branch])
 
+
+@unittest.skipIf(IS_JYTHON, NEEDS_CTYPES)
+class Live(Running):
     def test_it_stops_by_itself_where_the_energy_is_that_of_a_long_plain_solve(self):
         made = self.planes() + self.held()
         self.assertEqual(self.tick(made, Reset=True)["Iterations"], 0)
@@ -282,6 +284,149 @@ class Live(Case):
         )
         (made,) = curve["ConstraintSigs"]
         self.assertEqual((made["pointIndices"], made["scalars"], made["weights"]), ([[4]], [[4, 0, 9]], [5.0]))
+
+
+@unittest.skipIf(IS_JYTHON, NEEDS_CTYPES)
+class Hard(Running):
+    def hard_planes(self, weight=1.0):
+        return signature(self.canvas, "Plane", self.faces, [weight], Hard=True)
+
+    def branch(self, made, place):
+        return dict((path[-1], items) for path, items in plain(made)).get(place, [])
+
+    def test_hard_planes_are_planes_to_round_off_and_soft_ones_are_not(self):
+        result = self.settle(self.hard_planes() + self.held())
+        self.assertTrue(result["Stopped"])
+        self.assertEqual(self.solver.component.Message, "Stopped")
+        self.assertTrue(max(self.branch(result["Violations"], 0)) < 1e-9)
+        self.assertEqual(plain(result["Conflicts"]), [])
+        soft = self.settle(self.planes() + self.held())
+        self.assertTrue(max(self.branch(soft["Violations"], 0)) > 1e-4)
+
+    def test_with_nothing_else_a_hard_plane_is_the_best_fit_plane(self):
+        saddle = [0, 0, 0.1, 1, 0, -0.1, 1, 1, 0.1, 0, 1, -0.1]
+        made = signature(self.canvas, "Plane", [[0, 1, 2, 3]], Hard=True)
+        x = self.where(self.settle(made, Points=tree(points(saddle))))
+        for found, expected in zip(x, [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0]):
+            self.assertAlmostEqual(found, expected, 10)
+
+    def test_a_handle_takes_a_hard_edge_along_as_its_strength_says(self):
+        # Both points move by t along x: s (t - 1)^2 + 0.1 t^2, 0.1 being the library's closeness: t = s / (s + 0.1).
+        line, component = points([0, 0, 0, 1, 0, 0]), self.canvas.add("ShapeOpHandles")
+        edge = signature(self.canvas, "EdgeLength", [[0, 1]], [1.0], [[1.0, 1.0]], Hard=True)
+        given = dict(Points=tree(line))
+        with Calls() as calls:
+            for x, strength in ((1.0, 0.3), (2.0, 0.3), (3.0, 0.3), (3.0, 0.9)):
+                handles = component.run(Points=line, Handles=[Point3d(x, 0, 0)], Strength=[strength])["ConstraintSigs"]
+                self.assertEqual(handles[0]["pointIndices"], [[1]])
+                result = self.settle(edge + handles, **given)
+                t = (x - 1) * strength / (strength + 0.1)
+                self.assertAlmostEqual(self.where(result)[0], t, 8)
+                # The violation of a handle is its distance from the target.
+                self.assertAlmostEqual(self.branch(result["Violations"], 1)[0], x - 1 - t, 8)
+            sent = ("create", "addConstraints", "editConstraints", "setHard", "setHandle", "setObjective")
+            self.assertEqual([calls["shapeop_" + name] for name in sent], [1, 1, 1, 1, 3, 2])
+            # Let go, it goes back.
+            self.assertAlmostEqual(self.where(self.settle(edge, **given))[0], 0.0, 8)
+            self.assertEqual(calls["shapeop_releaseHandle"], 1)
+
+    def test_handles_of_unlike_strengths_stay_soft_constraints_of_their_own(self):
+        line, component = points([0, 0, 0, 1, 0, 0]), self.canvas.add("ShapeOpHandles")
+        edge = signature(self.canvas, "EdgeLength", [[0, 1]], [1.0], [[1.0, 1.0]], Hard=True)
+        ends = [LineCurve(Point3d(0, 0, 0), Point3d(-0.5, 0, 0)), LineCurve(Point3d(1, 0, 0), Point3d(1, 0, 0))]
+        handles = component.run(Points=line, Handles=ends, Strength=[3.0, 1.0])["ConstraintSigs"]
+        with Calls() as calls:
+            result = self.settle(edge + handles, Points=tree(line))
+            self.assertEqual((calls["shapeop_setHandle"], calls["shapeop_addConstraints"]), (0, 2))
+        # 3 (t + 0.5)^2 + t^2 and the library's closeness of both points: t (3 + 1 + 0.2) = -1.5.
+        self.assertAlmostEqual(self.where(result)[0], -1.5 / 4.2, 6)
+
+    def test_hard_constraints_come_and_go_with_a_fresh_start_and_change_on_the_way(self):
+        some = [signature(self.canvas, "Closeness", self.each[:5], [weight]) for weight in (0.1, 5.0)]
+        made = self.hard_planes() + some[0]
+        first = self.where(self.settle(made))
+        with Calls() as calls:
+            # Another weight of what is soft, then the first again: the same solution, without a new solver.
+            other = self.where(self.settle(self.hard_planes() + some[1]))
+            again = self.where(self.settle(made))
+            self.assertEqual(calls["shapeop_create"], 0)
+        self.assertTrue(max(abs(a - b) for a, b in zip(first, other)) > 1e-3)
+        self.assertTrue(max(abs(a - b) for a, b in zip(first, again)) < 1e-7)
+        with Calls() as calls:
+            soft = self.where(self.settle(self.planes() + self.held(), Threshold=1e-10))
+            self.assertEqual((calls["shapeop_create"], calls["shapeop_setHard"]), (1, 0))
+        fresh = self.canvas.add("ShapeOpLiveSolver")
+        self.solver = fresh
+        x = self.where(self.settle(self.planes() + self.held(), Threshold=1e-10))
+        self.assertTrue(max(abs(a - b) for a, b in zip(soft, x)) < 1e-9)
+
+    def test_one_of_two_hard_signatures_becomes_soft_and_hard_again_while_it_runs(self):
+        half = len(self.faces) // 2
+        first = signature(self.canvas, "Plane", self.faces[:half], Hard=True)
+        second = [signature(self.canvas, "Plane", self.faces[half:], Hard=hard) for hard in (True, False)]
+        with Calls() as calls:
+            both = self.settle(first + second[0] + self.held())
+            self.assertEqual(calls["shapeop_setHard"], len(self.faces))
+            calls.clear()
+            one = self.settle(first + second[1] + self.held())
+            self.assertEqual((calls["shapeop_setHard"], calls["shapeop_create"]), (len(self.faces) - half, 0))
+        self.assertTrue(max(self.branch(one["Violations"], 0)) < 1e-9 < 1e-4 < max(self.branch(one["Violations"], 1)))
+        again = self.settle(first + second[0] + self.held())
+        far = max(abs(a - b) for a, b in zip(self.where(both), self.where(again)))
+        self.assertTrue(far < 1e-7, far)
+
+    def test_a_contradiction_is_named_where_it_is(self):
+        square = points([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0])
+        edges = [[0, 1], [1, 2], [2, 3], [3, 0]]
+        made = signature(self.canvas, "EdgeLength", edges, [2.0], [[1.0, 1.0]], Hard=True)
+        made += signature(self.canvas, "LaplacianDisplacement", [[0, 1, 3], [1, 0, 2], [2, 1, 3], [3, 2, 0]])
+        planted = [[1, 2], [0, 1]]
+        made += signature(self.canvas, "EdgeLength", planted, [1.0], [[1.0, 1.0], [3.0, 3.0]], Hard=True)
+        result = self.settle(made, Points=tree(square))
+        self.assertEqual(plain(result["Conflicts"]), [([0, 2], [1])])
+        self.assertEqual(self.solver.component.Message, "In conflict")
+        self.assertTrue(result["Stopped"])
+        solver = self.canvas.add("ShapeOpOneShotSolver")
+        once = solver.run(ConstraintSigs=tree(made), Points=tree(square))
+        self.assertEqual(solver.errors(), [])
+        self.assertEqual((once["Outcome"], plain(once["Conflicts"])), ("infeasible", [([0, 2], [1])]))
+
+    def test_points_that_are_merged_are_dragged_as_one(self):
+        loose = [0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 1e-4]
+        made = signature(self.canvas, "Plane", [[0, 1, 2], [3, 4, 5]], Hard=True)
+        handles = self.canvas.add("ShapeOpHandles").run
+        ends = [LineCurve(Point3d(1, 0, 0), Point3d(2, 0, 0))]
+        grabbed = handles(Points=points(loose), Handles=ends)["ConstraintSigs"]
+        x = self.where(self.settle(made + grabbed, Points=tree(points(loose)), Tolerance=1e-3))
+        self.assertTrue(x[3] > 1.9)
+        self.assertEqual((x[3:6], x[6:9]), (x[9:12], x[15:18]))
+
+    def test_hard_constraints_in_dynamics_are_an_error_that_names_the_setting(self):
+        live = self.canvas.add("ShapeOpSettingsLive").run
+        given = dict(ConstraintSigs=tree(self.hard_planes()), Points=tree(points(self.given)))
+        made = self.solver.run(Settings=live(Reset=False)["Settings"][0], **given)
+        self.assertEqual(set(made.values()), {None})
+        self.assertIn("Dynamic must be False", self.solver.errors()[0])
+        made = self.solver.run(Settings=live(Dynamic=False, Reset=False)["Settings"][0], **given)
+        self.assertEqual(self.solver.errors(), [])
+        self.assertTrue(max(self.branch(made["Violations"], 0)) < 1e-9)
+
+    def test_what_cannot_be_hard_is_an_error_on_its_item(self):
+        line = dict(Points=tree(points([0, 0, 0, 1, 0, 0])))
+        for kind, indices in (("EdgeStrain", [[0, 0]]),):
+            made = signature(self.canvas, kind, indices, Hard=True)
+            self.solver.run(ConstraintSigs=tree(made), **line)
+            self.assertIn('ConstraintSigs: item 0 ("%s")' % kind, self.solver.errors()[0])
+
+    def test_the_published_solver_takes_them_too(self):
+        settings = self.canvas.add("ShapeOpSettingsStatic").run(Iterations=300)["Settings"][0]
+        solver = self.canvas.add("ShapeOpConstraintSolver")
+        saddle = [0, 0, 0.1, 1, 0, -0.1, 1, 1, 0.1, 0, 1, -0.1]
+        made = signature(self.canvas, "Plane", [[0, 1, 2, 3]], Hard=True)
+        x = flat(solver.run(ConstraintSigs=made, Points=points(saddle), Settings=settings)["Points"])
+        self.assertEqual(solver.errors(), [])
+        for found, expected in zip(x, [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0]):
+            self.assertAlmostEqual(found, expected, 6)
 
 
 @unittest.skipIf(IS_JYTHON, NEEDS_CTYPES)

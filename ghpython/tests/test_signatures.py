@@ -26,6 +26,25 @@ class Made(unittest.TestCase):
         }
         self.assertEqual(made, [expected])
 
+    def test_hard_is_said_only_where_it_is_so(self):
+        given = dict(ConstraintType="Plane", PointIndices=tree([0, 1, 2]), Weights=[1.0])
+        soft = {"type": "Plane", "pointIndices": [[0, 1, 2]], "weights": [1.0], "scalars": []}
+        for hard in (None, False):
+            self.assertEqual(self.component.run(Hard=hard, **given)["ConstraintSigs"], [soft])
+        made = self.component.run(Hard=True, **given)["ConstraintSigs"]
+        self.assertEqual(made, [dict(soft, hard=True)])
+        self.assertEqual([played[4] for played in signatures.read([soft] + made)], ["soft", "hard"])
+        self.assertEqual(signatures.copied(made), made)
+        self.assertTrue(signatures.are_hard([soft] + made))
+        for nonsense in ([soft], [], [None, 5, "hard"]):
+            self.assertFalse(signatures.are_hard(nonsense))
+
+    def test_a_component_without_the_port_makes_soft_constraints(self):
+        self.component.missing = ("Hard",)
+        made = self.component.run(ConstraintType="Plane", PointIndices=tree([0, 1, 2]), Weights=[1.0])
+        self.assertEqual(self.component.errors(), [])
+        self.assertNotIn("hard", made["ConstraintSigs"][0])
+
     def test_one_weight_and_one_list_of_scalars_are_repeated(self):
         (made,) = signature(Canvas(), "Area", [[0, 1, 2], [1, 2, 3], [2, 3, 4]], [3.0], [[0.5, 2.0]])
         self.assertEqual(made["weights"], [3.0] * 3)

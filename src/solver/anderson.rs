@@ -36,7 +36,11 @@ impl Anderson {
     pub(super) fn combine(&mut self, history: &History, combination: &mut Combination) -> usize {
         let m = history.len();
         let (l, theta) = (&mut self.factor, &mut self.theta);
-        let scale = |i: usize| 1.0 / history.change_change(i, i).sqrt();
+        // A change of length 0, as exact fixed points have, spans nothing: it is left out.
+        let scale = |i: usize| match history.change_change(i, i) {
+            squared if squared > 0.0 => 1.0 / squared.sqrt(),
+            _ => 0.0,
+        };
         let mut left_out = 0;
         // The newest pair comes first, so that it is the older of two dependent ones that is left out.
         for i in 0..m {
@@ -47,8 +51,7 @@ impl Anderson {
                 l[i * m + j] = if pivot > 0.0 { rest / pivot } else { 0.0 };
             }
             let pivot = 1.0 - (0..i).map(|k| l[i * m + k] * l[i * m + k]).sum::<f64>();
-            // False for NaN too, which a change of length 0 leads to.
-            if pivot > LEAST_PIVOT {
+            if scale(i) > 0.0 && pivot > LEAST_PIVOT {
                 l[i * m + i] = pivot.sqrt();
             } else {
                 l[i * m..=i * m + i].fill(0.0);

@@ -31,4 +31,13 @@ except ImportError as error:
         "environment variable SHAPEOP_HOME to the folder that contains shapeop_gh, then restart Rhino" % error
     )
 
-ConstraintSigs = host.run(ghenv, 1, components.constraint_signature, ConstraintType, PointIndices, Weights, Scalars)
+ConstraintSigs = host.run(
+    ghenv,
+    1,
+    components.constraint_signature,
+    ConstraintType,
+    PointIndices,
+    Weights,
+    Scalars,
+    globals().get("Hard"),  # components of the published client have no such port
+)

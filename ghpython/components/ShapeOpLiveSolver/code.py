@@ -31,9 +31,9 @@ except ImportError as error:
         "environment variable SHAPEOP_HOME to the folder that contains shapeop_gh, then restart Rhino" % error
     )
 
-Points, Iterations, Energy, Violations, Move, Stopped = host.run(
+Points, Iterations, Energy, Violations, Move, Stopped, Conflicts = host.run(
     ghenv,
-    6,
+    7,
     components.live_solver,
     ConstraintSigs,
     Points,

@@ -31,6 +31,6 @@ except ImportError as error:
         "environment variable SHAPEOP_HOME to the folder that contains shapeop_gh, then restart Rhino" % error
     )
 
-Points, Iterations, Energy, Violations, Outcome = host.run(
-    ghenv, 5, components.one_shot_solver, ConstraintSigs, Points, Forces, Tolerance, MaxIterations, Precision, Seconds
+Points, Iterations, Energy, Violations, Outcome, Conflicts = host.run(
+    ghenv, 6, components.one_shot_solver, ConstraintSigs, Points, Forces, Tolerance, MaxIterations, Precision, Seconds
 )

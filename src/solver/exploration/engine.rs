@@ -164,8 +164,12 @@ impl Engine {
                 break;
             }
             capped_for = if sweep.capped > 0 { capped_for + 1 } else { 0 };
-            if capped_for >= conflicts::PATIENCE && sweep.primal > self.tolerance * self.size {
+            let is_stuck = capped_for >= conflicts::PATIENCE;
+            if is_stuck {
                 capped_for = 0;
+            }
+            // Sweeps at rest with multipliers at their caps leave no residual, but a violation.
+            if is_stuck && self.is_violated() {
                 if self.raise_caps() {
                     self.splitting.set_penalty(2.0 * self.splitting.penalty, &solver.constraints, false)?;
                 } else if may_finish {
@@ -207,6 +211,12 @@ impl Engine {
             Some(pool) => pool.install(|| splitting.sweep(true)),
             None => splitting.sweep(false),
         }
+    }
+
+    /// True if a hard constraint is further from its set than the tolerance.
+    fn is_violated(&mut self) -> bool {
+        let bound = self.tolerance * self.size;
+        distances(&mut self.splitting.hard, &self.splitting.points).into_iter().any(|distance| distance > bound)
     }
 
     /// True if sweeps alone came to rest.
