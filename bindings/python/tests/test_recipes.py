@@ -36,8 +36,8 @@ def test_the_names_are_the_library_s_and_each_is_a_function() -> None:
         result = recipe(points, faces, max_iterations=50)
         hard = [i for i, one in enumerate(shapeop.recipe(name, points, faces).constraints) if one.hard]
         if hard:
-            # They are met to round-off, which costs energy.
-            assert max(result.violations[i] for i in hard) < 1e-10
+            # They are met within the recipe's tolerance, 1e-9 of the model's size, which costs energy.
+            assert max(result.violations[i] for i in hard) < 5e-9
         else:
             assert result.report.energy_after < result.report.energy_before
         with shapeop.recipe(name, points, faces).solver() as solver:
