@@ -78,7 +78,7 @@ static partial class Tests
             True(canonical.Contains("Žofie 李"), canonical);
         });
         double[] points = Grid(9, out List<int[]> faces);
-        Truth("every recipe makes a problem that can be solved and lowers its energy", () =>
+        Truth("every recipe makes a problem whose energy falls, or whose hard constraints are met to round-off", () =>
         {
             True(Problem.Recipes.Contains("planarize") && Problem.Recipes.Count >= 5, "recipes are missing");
             foreach (string recipe in Problem.Recipes)
@@ -90,6 +90,13 @@ static partial class Tests
                     SolveOptions options = solver.SetProblem(Problem.FromRecipe(recipe, points, faces, recipeOptions));
                     Near(points, solver.Points, 0);
                     Report report = solver.SolveUntil(options);
+                    if (solver.IsHard(0))
+                    {
+                        // Within the recipe's tolerance, 1e-9 of the size of 12; it costs energy.
+                        double worst = solver.Exploration.LargestViolation;
+                        True(worst < 1.2e-8, $"{recipe}: {worst} from what is hard");
+                        continue;
+                    }
                     True(report.EnergyAfter < report.EnergyBefore, $"{recipe}: the energy did not fall");
                 }
             }
