@@ -22,6 +22,8 @@ use super::quadratic::Quadratic;
 use crate::error::{Error, Result, Status};
 use crate::linalg::cholesky::{Analysis, Factor};
 use crate::linalg::symmetric::SymmetricMatrix;
+use crate::solver::anderson::Anderson;
+use crate::solver::history::{Combination, History};
 
 /// Newton steps at most.
 const STEPS: u32 = 30;
@@ -34,8 +36,12 @@ struct Updates {
     enough: f64,
 }
 
-const OF_A_STEP: Updates = Updates { most: 8, enough: 1e-4 };
+const OF_A_STEP: Updates = Updates { most: 12, enough: 1e-4 };
 const OF_AN_ANSWER: Updates = Updates { most: 60, enough: 1e-10 };
+
+/// Updates that their acceleration remembers, and the growth of what is left at which they are given up.
+const KRYLOV_MEMORY: usize = 12;
+const DIVERGED: f64 = 10.0;
 
 /// The penalty of the finish over that of the sweeps. Of 1, 5, 20, 100 and 1000, 5 needs the fewest Newton steps on the
 /// surfaces of Fig. 12 and succeeds earliest: stiffer, the steps follow the curved sets in small pieces.
@@ -389,8 +395,10 @@ impl Finish<'_> {
         let mut steps = Steps { points: vec![DVec3::ZERO; n], multipliers: vec![DVec3::ZERO; u.len()] };
         let mut first = Vec::new();
         let mut total = excess.to_vec();
-        let (mut smallest, mut enough) = (f64::INFINITY, 0.0);
-        for _ in 0..updates.most {
+        let (mut smallest, mut enough) = (f64::INFINITY, None);
+        let mut next = vec![DVec3::ZERO; u.len()];
+        let mut accelerated = Krylov::new(u.len());
+        for update in 1..=updates.most {
             let mut sums = gradient.to_vec();
             let mut curved = vec![DVec3::ZERO; n];
             self.quadratic.apply(&steps.points, &mut curved);
@@ -410,16 +418,17 @@ impl Finish<'_> {
             if first.is_empty() {
                 first = steps.points.clone();
             }
-            let residual = self.update_multipliers(system, excess, u, &mut steps, &mut total);
-            if smallest.is_infinite() {
-                enough = updates.enough * residual;
-            }
+            let residual = self.next_multipliers(system, excess, u, &steps, &mut next);
+            let enough = *enough.get_or_insert(updates.enough * residual);
+            smallest = smallest.min(residual);
             // True for NaN too.
-            if !(residual > enough && residual < smallest) {
+            if update == updates.most || !(residual > enough && residual < DIVERGED * smallest) {
                 break;
             }
-            smallest = residual;
+            accelerated.advance(&mut steps.multipliers, &next, self.is_parallel);
+            self.balance(system, excess, &steps, &mut total);
         }
+        steps.multipliers = next;
         (first, steps)
     }
 
@@ -436,50 +445,87 @@ impl Finish<'_> {
         }
     }
 
-    /// The multipliers that the steps of the points ask for; returns what is left of the linearised constraints, in
-    /// model units.
-    fn update_multipliers(
+    /// Writes the steps of multipliers that the steps of the points ask for; returns what is left of the linearised
+    /// constraints, in model units.
+    fn next_multipliers(
         &self,
         system: &System,
         excess: &[DVec3],
         u: &[DVec3],
-        steps: &mut Steps,
-        total: &mut [DVec3],
+        steps: &Steps,
+        next: &mut [DVec3],
     ) -> f64 {
-        let (mut own, mut rows) = (Vec::new(), Vec::new());
         let mut largest = 0.0_f64;
-        for (i, item) in self.hard.items.iter().enumerate() {
-            let of_item = item.rows();
-            let mut at = |lift: &[DVec3], with_points: bool, rows: &mut Vec<DVec3>| {
-                own.clear();
-                own.extend(self.hard.indices[item.points()].iter().enumerate().map(|(place, &index)| {
-                    let step = if with_points { steps.points[index as usize] } else { DVec3::ZERO };
-                    step + self.hard.lifted(item, place, lift)
-                }));
-                rows.clear();
-                rows.resize(item.row_count, DVec3::ZERO);
-                system.hard.residual(self.hard, i, &own, rows);
-            };
-            let old = &steps.multipliers[of_item.clone()];
-            at(old, true, &mut rows);
-            let found: Vec<DVec3> = rows.iter().zip(&excess[of_item.clone()]).map(|(row, e)| *e + *row).collect();
-            let gap: f64 = found
-                .iter()
-                .zip(&u[of_item.clone()])
-                .zip(old)
-                .map(|((e, u), step)| (*e - *u - *step).length_squared())
-                .sum();
+        self.each_excess(system, excess, steps, |item, e| {
+            let mut gap = 0.0;
+            for (r, e) in item.rows().zip(e) {
+                next[r] = *e - u[r];
+                gap += (next[r] - steps.multipliers[r]).length_squared();
+            }
             largest = largest.max(item.scale * gap.sqrt());
-            for (r, e) in of_item.zip(found) {
-                steps.multipliers[r] = e - u[r];
-            }
-            // What the next solve has to balance: the excess with the new multipliers.
-            at(&steps.multipliers[item.rows()], true, &mut rows);
-            for ((total, row), e) in total[item.rows()].iter_mut().zip(&rows).zip(&excess[item.rows()]) {
-                *total = *e + *row;
-            }
-        }
+        });
         largest
+    }
+
+    /// Writes what the next solve has to balance: the excess behind `steps`.
+    fn balance(&self, system: &System, excess: &[DVec3], steps: &Steps, total: &mut [DVec3]) {
+        self.each_excess(system, excess, steps, |item, e| total[item.rows()].copy_from_slice(e));
+    }
+
+    /// Calls `visit` with every constraint and its linearised excess behind `steps`: `e + (A − J) dp + (I − J) du`.
+    fn each_excess(&self, system: &System, excess: &[DVec3], steps: &Steps, mut visit: impl FnMut(&Item, &[DVec3])) {
+        let (mut own, mut rows) = (Vec::new(), Vec::new());
+        for (i, item) in self.hard.items.iter().enumerate() {
+            let lift = &steps.multipliers[item.rows()];
+            own.clear();
+            own.extend(
+                self.hard.indices[item.points()]
+                    .iter()
+                    .enumerate()
+                    .map(|(place, &index)| steps.points[index as usize] + self.hard.lifted(item, place, lift)),
+            );
+            rows.clear();
+            rows.resize(item.row_count, DVec3::ZERO);
+            system.hard.residual(self.hard, i, &own, &mut rows);
+            rows.iter_mut().zip(&excess[item.rows()]).for_each(|(row, e)| *row += *e);
+            visit(item, &rows);
+        }
+    }
+}
+
+/// Anderson acceleration of the multipliers of a linear problem, where it is a Krylov method.
+struct Krylov {
+    history: History,
+    anderson: Anderson,
+    combination: Combination,
+    step: Vec<DVec3>,
+    direction: Vec<DVec3>,
+}
+
+impl Krylov {
+    fn new(row_count: usize) -> Self {
+        let (mut history, mut anderson, mut combination) =
+            (History::default(), Anderson::default(), Combination::default());
+        history.reset(KRYLOV_MEMORY, row_count);
+        anderson.reset(KRYLOV_MEMORY);
+        combination.reset(KRYLOV_MEMORY);
+        let vector = || vec![DVec3::ZERO; row_count];
+        Self { history, anderson, combination, step: vector(), direction: vector() }
+    }
+
+    /// Replaces `multipliers`, whose plain update is `next`.
+    fn advance(&mut self, multipliers: &mut [DVec3], next: &[DVec3], is_parallel: bool) {
+        for ((step, next), old) in self.step.iter_mut().zip(next).zip(&*multipliers) {
+            *step = *next - *old;
+        }
+        self.history.push(multipliers, next, &self.step, is_parallel);
+        if self.history.len() == 0 {
+            multipliers.copy_from_slice(next);
+            return;
+        }
+        self.anderson.combine(&self.history, &mut self.combination);
+        self.history.combine(&self.combination, &mut self.direction, is_parallel);
+        multipliers.iter_mut().zip(&self.direction).for_each(|(multiplier, step)| *multiplier += *step);
     }
 }
 
