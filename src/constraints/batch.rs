@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::deformation::{Deformation, gradient_four};
 use super::lists::Lists;
-use super::{Constraint, ReferenceShape, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, ReferenceShape, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{self, F4, Mask, V4};
 use crate::linalg::simd::{Isa, LaneKernel, dispatch_lanes};
 
@@ -211,46 +211,6 @@ impl<T: Constraint> Batch for TypedBatch<T> {
 
     fn clone_box(&self) -> Box<dyn Batch> {
         Box::new(self.clone())
-    }
-}
-
-/// What [`Constraint::project_four`] sees of four constraints besides their points.
-#[derive(Clone, Copy, Debug)]
-pub struct Four<'a, T, S> {
-    /// The instruction set.
-    pub simd: S,
-    constraints: [&'a T; 4],
-    scalars: [&'a [f64]; 4],
-}
-
-impl<'a, T, S: Isa> Four<'a, T, S> {
-    /// Four rest states with the scalars in force of each.
-    pub fn new(simd: S, constraints: [&'a T; 4], scalars: [&'a [f64]; 4]) -> Self {
-        Self { simd, constraints, scalars }
-    }
-
-    /// The same number for all.
-    #[inline(always)]
-    pub fn splat(&self, value: f64) -> F4<S> {
-        F4::splat(self.simd, value)
-    }
-
-    /// Scalar `i` of each.
-    #[inline(always)]
-    pub fn scalar(&self, i: usize) -> F4<S> {
-        F4::new(self.simd, self.scalars.map(|scalars| scalars[i]))
-    }
-
-    /// The rest states.
-    #[inline(always)]
-    pub fn rests(&self) -> [&'a T; 4] {
-        self.constraints
-    }
-
-    /// A number of each rest state.
-    #[inline(always)]
-    pub fn rest(&self, number: impl Fn(&T) -> f64) -> F4<S> {
-        F4::new(self.simd, self.constraints.map(number))
     }
 }
 
@@ -561,7 +521,7 @@ impl<T: Constraint> TypedBatch<T> {
             }
         };
         let [a, b, c, d] = &self.rest[slot..slot + 4] else { return None };
-        let four = Four { simd, constraints: [a, b, c, d], scalars };
+        let four = Four::new(simd, [a, b, c, d], scalars);
         // All indices are checked before the first point is read: the numbers then go straight into vector registers.
         let mut at = [[points.first()?; 4]; K];
         for (j, at) in at.iter_mut().enumerate() {

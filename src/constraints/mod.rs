@@ -10,6 +10,7 @@
 
 mod batch;
 mod deformation;
+mod four;
 #[cfg(test)]
 mod laws;
 mod lists;
@@ -20,8 +21,8 @@ mod set;
 mod shape_fit;
 mod stencil;
 
-pub use batch::Four;
 pub(crate) use batch::{Batch, ProjectPair};
+pub use four::Four;
 pub use references::{ReferenceId, ReferenceKind, ReferenceShape};
 pub use set::{ConstraintId, ConstraintSet, ConstraintView, Edited, NewConstraints};
 pub use stencil::Stencil;

@@ -92,7 +92,7 @@ impl Quadratic {
         for (i, sum) in sums.iter_mut().enumerate() {
             *sum = self.diagonal[i] * self.targets[i] + self.forces[i];
         }
-        self.add_fairness(&self.initial, 1.0, sums);
+        self.add_fairness(&self.initial, sums);
     }
 
     /// The gradient at `points`.
@@ -101,7 +101,7 @@ impl Quadratic {
             *sum = self.diagonal[i] * (points[i] - self.targets[i]) - self.forces[i];
         }
         let displacements: Vec<DVec3> = points.iter().zip(&self.initial).map(|(p, start)| *p - *start).collect();
-        self.add_fairness(&displacements, 1.0, sums);
+        self.add_fairness(&displacements, sums);
     }
 
     /// The matrix times `vectors`.
@@ -109,13 +109,14 @@ impl Quadratic {
         for (i, sum) in sums.iter_mut().enumerate() {
             *sum = self.diagonal[i] * vectors[i];
         }
-        self.add_fairness(vectors, 1.0, sums);
+        self.add_fairness(vectors, sums);
     }
 
-    fn add_fairness(&self, vectors: &[DVec3], sign: f64, sums: &mut [DVec3]) {
+    /// Adds `w_f Lᵀ L` times `vectors`.
+    fn add_fairness(&self, vectors: &[DVec3], sums: &mut [DVec3]) {
         for row in self.rows.iter() {
             let image: DVec3 = row.iter().map(|&(i, a)| a * vectors[i as usize]).sum();
-            let scaled = sign * self.weights.fairness_weight * image;
+            let scaled = self.weights.fairness_weight * image;
             row.iter().for_each(|&(i, a)| sums[i as usize] += a * scaled);
         }
     }
@@ -131,7 +132,7 @@ impl Quadratic {
         };
         let displacements: Vec<DVec3> = points.iter().zip(&self.initial).map(|(p, start)| *p - *start).collect();
         let mut fairness = vec![DVec3::ZERO; points.len()];
-        self.add_fairness(&displacements, 1.0, &mut fairness);
+        self.add_fairness(&displacements, &mut fairness);
         [part(true), part(false), fairness]
     }
 
