@@ -219,7 +219,8 @@ fn sensitivities_are_the_differences_of_solutions() {
     let mesh = translation_surface(7).unwrap();
     let solution = |[handle, closeness, fairness, soft]: [f64; 4]| {
         let objective = Objective {
-            handle_weight: 100.0 * handle,
+            // Heavy handles hardly answer to their weight.
+            handle_weight: 5.0 * handle,
             closeness_weight: 0.1 * closeness,
             fairness_weight: fairness,
             tolerance: 1e-14,

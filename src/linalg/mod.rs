@@ -7,6 +7,7 @@ pub mod lanes;
 mod multilevel;
 mod nested_dissection;
 mod panels;
+pub mod positive_part;
 mod rows;
 pub mod simd;
 pub mod small;

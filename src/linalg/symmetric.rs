@@ -116,15 +116,18 @@ impl Pattern {
     /// Adds `value` to entry `(i, j)`, and so to `(j, i)`, of the matrix with these `values`. False if there is no such entry.
     #[must_use]
     pub fn add(&self, values: &mut [f64], i: u32, j: u32, value: f64) -> bool {
+        let place = self.place(i, j);
+        if let Some(k) = place {
+            values[k] += value;
+        }
+        place.is_some()
+    }
+
+    /// Where the values have entry `(i, j)`, which is also `(j, i)`.
+    pub fn place(&self, i: u32, j: u32) -> Option<usize> {
         let (row, column) = (i.max(j), i.min(j) as usize);
         let (start, end) = (self.column_starts[column] as usize, self.column_starts[column + 1] as usize);
-        match self.rows[start..end].binary_search(&row) {
-            Ok(k) => {
-                values[start + k] += value;
-                true
-            }
-            Err(_) => false,
-        }
+        self.rows[start..end].binary_search(&row).ok().map(|k| start + k)
     }
 
     /// The diagonal entry `i` of the matrix with these `values`.

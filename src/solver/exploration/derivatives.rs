@@ -1,153 +1,231 @@
-//! Derivatives of projections, by central differences, and the second derivatives of the augmented Lagrangian that they
+//! Derivatives of projections by differences, and the second derivatives of the augmented Lagrangian that they
 //! make.
 //!
-//! The derivative `J` of the projection onto a smooth set at `w = z + ν`, `z` in the set and `ν` normal to it there, is
-//! 0 along the normals and `(I − S_ν)⁻¹` along the tangents, `S_ν` being the curvature of the set in the direction `ν`.
-//! So `I − J` holds normals and curvature: all that Newton's method needs of a constraint, and the projection is all
-//! that a type has to know.
+//! The derivative `J` of the projection onto a smooth set at the rows `w = z + ν`, `z` in the set and `ν` normal to it
+//! there, is 0 along the normals and `(I − S_ν)⁻¹` along the tangents, `S_ν` being the curvature of the set in the
+//! direction `ν`. So `M = I − J` holds normals and curvature: all that Newton's method needs of a constraint, and the
+//! projection is all that a type has to know. `M` is symmetric, as a projection is the gradient of a function. Where a
+//! set curves away from `ν` it has negative eigenvalues: without those, it is that of the nearest convex problem.
 
 use glam::DVec3;
 
 use super::local::{Item, Local};
+use crate::linalg::positive_part::PositivePart;
+use crate::solver::parallel::for_parts;
 
-/// Steps of differences relative to a constraint's extent: the cube root of the precision, nearly.
-const STEP: f64 = 1e-5;
+/// How derivatives are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Differences {
+    /// To 1e-7 or so: enough for a step.
+    Forward,
+    /// To 1e-10 or so, at twice the projections: for an answer.
+    Central,
+}
+
+impl Differences {
+    /// The step relative to a constraint's extent: the square and the cube root of the precision, nearly.
+    fn step(self) -> f64 {
+        match self {
+            Self::Forward => 1e-7,
+            Self::Central => 1e-5,
+        }
+    }
+
+    /// Between which multiples of the step differences are taken.
+    fn ends(self) -> [f64; 2] {
+        match self {
+            Self::Forward => [1.0, 0.0],
+            Self::Central => [1.0, -1.0],
+        }
+    }
+}
 
 /// Extent of a constraint of one point, relative to the model.
 const SINGLE: f64 = 1e-2;
 
-/// `∂P/∂x` of every constraint, row by row: `3` numbers per row of the constraint times `3` per point.
+/// `M = I − ∂P/∂w` of every constraint: a square matrix of 3 rows per row of the constraint.
+#[derive(Clone)]
 pub(super) struct Derivatives {
     values: Vec<f64>,
     starts: Vec<usize>,
+    /// Where the chunks of constraints begin among the values.
+    bounds: Vec<usize>,
 }
 
 impl Derivatives {
-    /// Those at the points where `local` last was placed. `elastic` takes the targets to those of the elastic set, see
-    /// [`super::splitting`]; it is given a constraint, its rows and its targets.
+    /// Those at the points where `local` last was placed, `rows` being the constraints' rows there. `elastic` takes the
+    /// targets to those of the elastic set, see [`super::splitting`]; it is given a constraint, its rows and its
+    /// targets.
     pub(super) fn new(
         local: &mut Local,
         size: f64,
-        elastic: impl Fn(usize, &Item, &[DVec3], &mut [DVec3]),
+        differences: Differences,
+        elastic: impl Fn(usize, &Item, &[DVec3], &mut [DVec3]) + Sync,
         is_parallel: bool,
     ) -> Self {
         let mut starts = vec![0];
         for item in &local.items {
-            starts.push(starts[starts.len() - 1] + 9 * item.row_count * item.point_count);
+            starts.push(starts[starts.len() - 1] + 9 * item.row_count * item.row_count);
         }
+        let bounds: Vec<usize> = local.item_bounds.iter().map(|&item| starts[item]).collect();
         let mut values = vec![0.0; starts[starts.len() - 1]];
         let center = local.points.clone();
+        local.project(is_parallel);
         let targets = local.targets.clone();
-        let steps: Vec<f64> = local.items.iter().map(|item| step(&center[item.points()], size)).collect();
-        let most = local.items.iter().map(|item| item.point_count).max().unwrap_or(0);
-        let mut rows = Vec::new();
-        let mut plus = vec![DVec3::ZERO; local.targets.len()];
+        let ends = differences.ends();
+        let step = |item: &Item| differences.step() * extent(&center[item.points()], size) / item.scale;
+        let steps: Vec<f64> = local.items.iter().map(step).collect();
+        let most = local.items.iter().map(|item| item.row_count).max().unwrap_or(0);
+        let mut nothing = vec![(); bounds.len() - 1];
+        let mut plus = Vec::new();
         for column in 0..3 * most {
-            let (place, axis) = (column / 3, column % 3);
-            for sign in [1.0, -1.0] {
-                for (item, step) in local.items.iter().zip(&steps).filter(|(item, _)| place < item.point_count) {
-                    local.points[item.first_point + place][axis] = center[item.first_point + place][axis] + sign * step;
+            let (row, axis) = (column / 3, column % 3);
+            for end in ends {
+                if end == 0.0 {
+                    local.targets.copy_from_slice(&targets);
+                    continue;
+                }
+                for (item, step) in local.items.iter().zip(&steps).filter(|(item, _)| row < item.row_count) {
+                    let mut unit = DVec3::ZERO;
+                    unit[axis] = end * step;
+                    for place in 0..item.point_count {
+                        local.points[item.first_point + place] =
+                            center[item.first_point + place] + local.lifted_row(item, place, row) * unit;
+                    }
                 }
                 local.project(is_parallel);
-                for (i, item) in local.items.iter().enumerate().filter(|(_, item)| place < item.point_count) {
-                    rows.clear();
-                    rows.resize(item.row_count, DVec3::ZERO);
-                    own_rows(local, item, &mut rows);
-                    let (own, step) = (item.rows(), steps[i]);
-                    if sign > 0.0 {
-                        plus[own.clone()].copy_from_slice(&local.targets[own.clone()]);
-                        elastic(i, item, &rows, &mut plus[own]);
-                        continue;
-                    }
-                    elastic(i, item, &rows, &mut local.targets[own.clone()]);
-                    for (r, (after, before)) in plus[own.clone()].iter().zip(&local.targets[own]).enumerate() {
-                        let slope = (*after - *before) / (2.0 * step);
-                        for (b, slope) in slope.to_array().into_iter().enumerate() {
-                            values[starts[i] + (3 * r + b) * 3 * item.point_count + column] = slope;
-                        }
-                    }
+                if end == ends[0] {
+                    plus.clone_from(&local.targets);
                 }
             }
             local.points.copy_from_slice(&center);
+            let (local, minus) = (&*local, &local.targets);
+            let work = |chunk: usize, values: &mut [f64], (): &mut ()| {
+                let (mut rows, mut after, mut before) = (Vec::new(), Vec::new(), Vec::new());
+                for i in local.item_bounds[chunk]..local.item_bounds[chunk + 1] {
+                    let item = &local.items[i];
+                    if row >= item.row_count {
+                        continue;
+                    }
+                    apply_rows(local, item, &center[item.points()], resized(&mut rows, item.row_count));
+                    after.clear();
+                    after.extend_from_slice(&plus[item.rows()]);
+                    before.clear();
+                    before.extend_from_slice(&minus[item.rows()]);
+                    let step = steps[i];
+                    for (by, targets) in [(ends[0] * step, &mut after), ((ends[1] - ends[0]) * step, &mut before)] {
+                        (0..item.row_count).for_each(|r| rows[r][axis] += by * local.image_of_row(item, r, row));
+                        elastic(i, item, &rows, targets);
+                    }
+                    let columns = 3 * item.row_count;
+                    let own = &mut values[starts[i] - bounds[chunk]..][..columns * columns];
+                    for (r, (after, before)) in after.iter().zip(&before).enumerate() {
+                        let mut slope = (*before - *after) / ((ends[0] - ends[1]) * step);
+                        slope[axis] += local.image_of_row(item, r, row);
+                        (0..3).for_each(|b| own[(3 * r + b) * columns + column] = slope[b]);
+                    }
+                }
+            };
+            for_parts(&bounds, &mut values, &mut nothing, is_parallel, &work);
         }
         local.targets = targets;
-        Self { values, starts }
+        let work = |chunk: usize, values: &mut [f64], (): &mut ()| {
+            for i in local.item_bounds[chunk]..local.item_bounds[chunk + 1] {
+                make_symmetric(
+                    &mut values[starts[i] - bounds[chunk]..starts[i + 1] - bounds[chunk]],
+                    3 * local.items[i].row_count,
+                );
+            }
+        };
+        for_parts(&bounds, &mut values, &mut nothing, is_parallel, &work);
+        Self { values, starts, bounds }
     }
 
-    /// `(A − J) x` of one constraint, `x` being vectors at its points.
-    pub(super) fn residual(&self, local: &Local, i: usize, x: &[DVec3], rows: &mut [DVec3]) {
-        let item = &local.items[i];
-        apply_rows(local, item, x, rows);
-        let columns = 3 * item.point_count;
+    /// The same without the negative eigenvalues.
+    pub(super) fn positive(&self, local: &Local, is_parallel: bool) -> Self {
+        let mut positive = self.clone();
+        let work = |chunk: usize, values: &mut [f64], (): &mut ()| {
+            let mut part: Option<PositivePart> = None;
+            for i in local.item_bounds[chunk]..local.item_bounds[chunk + 1] {
+                let own = &mut values[self.starts[i] - self.bounds[chunk]..self.starts[i + 1] - self.bounds[chunk]];
+                // Inactive constraints have none.
+                if own.iter().all(|value| *value == 0.0) {
+                    continue;
+                }
+                let size = 3 * local.items[i].row_count;
+                let known = part.take().filter(|part| part.size() == size);
+                part.insert(known.unwrap_or_else(|| PositivePart::new(size))).replace(own);
+            }
+        };
+        for_parts(&self.bounds, &mut positive.values, &mut vec![(); self.bounds.len() - 1], is_parallel, &work);
+        positive
+    }
+
+    /// Adds `M x` of one constraint, `x` being rows.
+    pub(super) fn add_product(&self, i: usize, x: &[DVec3], rows: &mut [DVec3]) {
+        let columns = 3 * x.len();
         for (r, row) in rows.iter_mut().enumerate() {
             for b in 0..3 {
                 let line = &self.values[self.starts[i] + (3 * r + b) * columns..][..columns];
-                let sum = line.chunks_exact(3).zip(x).map(|(line, x)| DVec3::from_slice(line).dot(*x)).sum::<f64>();
-                row[b] -= sum;
+                row[b] += line.chunks_exact(3).zip(x).map(|(line, x)| DVec3::from_slice(line).dot(*x)).sum::<f64>();
             }
         }
     }
 
-    /// Calls `visit(a, b, value)` for the lower triangle of `Aᵀ (A − J)`, made symmetric; `a` and `b` count the
-    /// coordinates of the constraint's points.
-    pub(super) fn each_entry(
-        &self,
-        local: &Local,
-        i: usize,
-        block: &mut Vec<f64>,
-        mut visit: impl FnMut(usize, usize, f64),
-    ) {
+    /// Calls `visit(value)` for the lower triangle of `Aᵀ M A`, row by row, of the coordinates of the constraint's
+    /// points.
+    pub(super) fn each_entry(&self, local: &Local, i: usize, block: &mut Vec<f64>, mut visit: impl FnMut(f64)) {
         let item = &local.items[i];
-        let (k, rows) = (item.point_count, item.row_count);
-        let columns = 3 * k;
         let values = &self.values[self.starts[i]..self.starts[i + 1]];
-        // Aᵀ J, then Aᵀ A.
+        let Some((a, _)) = local.matrices(item) else {
+            // M takes means off on both sides.
+            let columns = 3 * item.row_count;
+            (0..columns).for_each(|r| values[r * columns..=r * columns + r].iter().for_each(|value| visit(*value)));
+            return;
+        };
+        let (k, rows) = (item.point_count, item.row_count);
+        // M A, then Aᵀ of that.
         block.clear();
-        block.resize(columns * columns, 0.0);
-        match local.matrices(item) {
-            // For centred rows A is symmetric, and J has neither mean nor, but for round-off, a response to one.
-            None => block.iter_mut().zip(values).for_each(|(value, j)| *value = -j),
-            Some((a, _)) => {
-                for r in 0..rows {
-                    for (place, coefficient) in a[r * k..(r + 1) * k].iter().enumerate().filter(|(_, a)| **a != 0.0) {
-                        for b in 0..3 {
-                            let line = &values[(3 * r + b) * columns..][..columns];
-                            let own = &mut block[(3 * place + b) * columns..][..columns];
-                            own.iter_mut().zip(line).for_each(|(own, j)| *own -= coefficient * j);
-                        }
+        block.resize(3 * rows * 3 * k, 0.0);
+        for r in 0..3 * rows {
+            for s in 0..rows {
+                for (place, coefficient) in a[s * k..(s + 1) * k].iter().enumerate().filter(|(_, a)| **a != 0.0) {
+                    for b in 0..3 {
+                        block[r * 3 * k + 3 * place + b] += coefficient * values[r * 3 * rows + 3 * s + b];
                     }
                 }
             }
         }
-        for p in 0..k {
-            for q in 0..k {
-                let product = match local.matrices(item) {
-                    None => f64::from(u8::from(p == q)) - 1.0 / k as f64,
-                    Some((a, _)) => (0..rows).map(|r| a[r * k + p] * a[r * k + q]).sum(),
-                };
-                for b in 0..3 {
-                    block[(3 * p + b) * columns + 3 * q + b] += product;
+        for place in 0..k {
+            for b in 0..3 {
+                for c in 0..=3 * place + b {
+                    visit((0..rows).map(|s| a[s * k + place] * block[(3 * s + b) * 3 * k + c]).sum());
                 }
-            }
-        }
-        for a in 0..columns {
-            for b in 0..=a {
-                visit(a, b, 0.5 * (block[a * columns + b] + block[b * columns + a]));
             }
         }
     }
 }
 
-/// The step of a constraint at these points.
-fn step(points: &[DVec3], size: f64) -> f64 {
-    let first = points[0];
-    let extent = points.iter().map(|point| point.distance(first)).fold(0.0, f64::max);
-    STEP * if extent > 0.0 { extent } else { SINGLE * size }
+fn resized(rows: &mut Vec<DVec3>, count: usize) -> &mut [DVec3] {
+    rows.clear();
+    rows.resize(count, DVec3::ZERO);
+    rows
 }
 
-/// `A x` of the constraint's own points.
-fn own_rows(local: &Local, item: &Item, rows: &mut [DVec3]) {
-    apply_rows(local, item, &local.points[item.points()], rows);
+fn make_symmetric(matrix: &mut [f64], size: usize) {
+    for i in 0..size {
+        for j in 0..i {
+            let mean = 0.5 * (matrix[i * size + j] + matrix[j * size + i]);
+            (matrix[i * size + j], matrix[j * size + i]) = (mean, mean);
+        }
+    }
+}
+
+/// The extent of a constraint at these points.
+fn extent(points: &[DVec3], size: f64) -> f64 {
+    let first = points[0];
+    let extent = points.iter().map(|point| point.distance(first)).fold(0.0, f64::max);
+    if extent > 0.0 { extent } else { SINGLE * size }
 }
 
 /// `A x`, `x` being vectors at the constraint's points.

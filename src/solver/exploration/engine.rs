@@ -17,11 +17,14 @@ use crate::constraints::ConstraintId;
 use crate::error::Result;
 use crate::solver::{Outcome, Progress, ProgressFn, Report, SolveOptions, Solver};
 
-/// Sweeps before the first finish, and sweeps in which no constraint may have become active or inactive.
+/// Sweeps before the first finish: so many in any case, and more, up to the second number, while constraints become active or
+/// inactive in [`SETTLED`] sweeps. A step of the finish costs as much as some ten to thirty sweeps.
+const FIRST: u32 = 20;
 const SETTLED: u32 = 5;
+const LATEST: u32 = 40;
 
 /// Largest distance from a hard constraint, over the mean extent of hard constraints, at which a finish is tried.
-const NEAR: f64 = 1e-2;
+const NEAR: f64 = 0.05;
 
 /// Sweeps between looks at the balance of the penalty, and how often it may be changed by that.
 const BALANCE: u32 = 10;
@@ -105,7 +108,7 @@ impl Engine {
         let is_over = |started: &Instant| has_budget && started.elapsed().as_secs_f64() >= sweeping_seconds;
         // While a handle moves, frames come before digits.
         let may_finish = wants_finish && !(has_budget && explorer.has_new_targets);
-        let (mut settled, mut next_finish, mut least, mut idle) = (0, SETTLED, f64::INFINITY, 0);
+        let (mut settled, mut next_finish, mut least, mut idle) = (0, FIRST, f64::INFINITY, 0);
         let mut capped_for = 0;
         let follows = solver.forces.has_forces_on_faces();
         while found.sweeps < options.max_iterations {
@@ -140,11 +143,7 @@ impl Engine {
                 idle += 1;
             }
             let is_near = sweep.primal <= NEAR * self.extent || idle > 3 * BALANCE;
-            if may_finish
-                && is_near
-                && found.sweeps >= next_finish
-                && (settled >= SETTLED || found.sweeps >= 4 * SETTLED)
-            {
+            if may_finish && is_near && found.sweeps >= next_finish && (settled >= SETTLED || found.sweeps >= LATEST) {
                 let is_solution = self.finish(&mut found, options, started)?;
                 solver.points.copy_from_slice(&self.splitting.points);
                 // Forces on faces were held while the points moved.
@@ -208,8 +207,8 @@ impl Engine {
     pub(super) fn sweep(&mut self) -> Sweep {
         let splitting = &mut self.splitting;
         match &self.pool {
-            Some(pool) => pool.install(|| splitting.sweep(true)),
-            None => splitting.sweep(false),
+            Some(pool) if splitting.points.len() >= super::PARALLEL_POINTS => pool.install(|| splitting.sweep(true)),
+            _ => splitting.sweep(false),
         }
     }
 
@@ -279,6 +278,7 @@ impl Engine {
             penalty: finish::penalty_behind(splitting.penalty),
             size: self.size,
             force: self.force,
+            extent: self.extent,
             is_parallel: self.pool.is_some(),
         }
     }

@@ -8,15 +8,20 @@
 //! ```
 //!
 //! Both are linearised with the derivative `J` of the projection, soft constraints included, so that the active set and
-//! the curvature of the sets come from the projections alone. The matrix `∇²F + m Aᵀ (I − J) A` is positive definite
-//! near a minimum; the multipliers of the linear problem are found by the method of multipliers, at one solve with its
-//! factor each. A step counts if it lowers the larger of the two residuals; otherwise the first solve is a descent
-//! direction of the augmented Lagrangian, which is searched. Source: Bertsekas 1996, "Constrained optimization and
-//! Lagrange multiplier methods", sections 2.3 and 4.
+//! the curvature of the sets come from the projections alone. The multipliers of the linear problem are found by the
+//! method of multipliers, at one solve with the factor of `∇²F + m Aᵀ (I − J) A` each.
+//!
+//! Far from a solution that matrix need not be positive definite. Steps then are those of the nearest convex problem:
+//! negative eigenvalues of every `I − J` are left out, which costs some steps more but leads there. Once steps are
+//! short the exact matrix is tried, and with it convergence is quadratic. A step counts if it lowers the larger of the
+//! two residuals below what it was a few steps ago; otherwise it is shortened, and where that does not help either, the
+//! first solve is a descent direction of the augmented Lagrangian, which is searched. Sources: Bertsekas 1996,
+//! "Constrained optimization and Lagrange multiplier methods", sections 2.3 and 4; Grippo, Lampariello and Lucidi 1986,
+//! "A nonmonotone line search technique for Newton's method".
 
 use glam::DVec3;
 
-use super::derivatives::{Derivatives, add_transposed};
+use super::derivatives::{Derivatives, Differences, add_transposed};
 use super::local::{Item, Local};
 use super::quadratic::Quadratic;
 use crate::error::{Error, Result, Status};
@@ -28,31 +33,41 @@ use crate::solver::history::{Combination, History};
 /// Newton steps at most.
 const STEPS: u32 = 30;
 
-/// Multiplier updates of one linear problem at most, and by how much they are to lower its residual: for a Newton step,
-/// and for a derivative that is an answer.
-#[derive(Clone, Copy)]
-struct Updates {
-    most: u32,
-    enough: f64,
-}
+/// Multiplier updates of one linear problem at most, and to what part they are to lower its residual: for an exact step,
+/// for a convex one, which is near the exact one only, for one with an old factor, and for a derivative that is an
+/// answer.
+const UPDATES: u32 = 60;
+const ENOUGH_EXACT: f64 = 1e-4;
+const ENOUGH_CONVEX: f64 = 1e-2;
+const ENOUGH_ANSWER: f64 = 1e-10;
+const ENOUGH_CHORD: f64 = 0.1;
 
-const OF_A_STEP: Updates = Updates { most: 12, enough: 1e-4 };
-const OF_AN_ANSWER: Updates = Updates { most: 60, enough: 1e-10 };
+/// Steps with an old factor at most, and to what part they have to lower the larger residual to count: they cost a fifth
+/// of a step, or less.
+const CHORDS: u32 = 4;
+const CHORD_EXACT: f64 = 0.25;
+const CHORD_CONVEX: f64 = 0.8;
 
 /// Updates that their acceleration remembers, and the growth of what is left at which they are given up.
 const KRYLOV_MEMORY: usize = 12;
 const DIVERGED: f64 = 10.0;
 
-/// The penalty of the finish over that of the sweeps. Of 1, 5, 20, 100 and 1000, 5 needs the fewest Newton steps on the
-/// surfaces of Fig. 12 and succeeds earliest: stiffer, the steps follow the curved sets in small pieces.
-const STIFFER: f64 = 5.0;
+/// The penalty of the finish over that of the sweeps: so stiff that few updates of the multipliers solve the linear
+/// problem.
+const STIFFER: f64 = 30.0;
 
-/// Where a step leaves more than this part of the distance from the constraints, and the gradient is the smaller
-/// residual, multipliers come too slowly, and the penalty is raised: constraints that nearly depend on each other need
-/// that.
-const SLOW: f64 = 0.1;
-const STIFFENING: f64 = 5.0;
-const STIFFEST: f64 = 100.0;
+/// The penalty of answers over that of the finish: where curved constraints press hard, the matrix is positive definite
+/// under a stiff penalty only.
+const STIFFER_ANSWER: f64 = 10.0;
+
+/// Steps that look back for a residual which the next has to be below, and how often a step is halved for that.
+const LOOKS_BACK: usize = 3;
+const HALVINGS: u32 = 3;
+
+/// The largest move of a point, over the mean extent of hard constraints, behind which the exact matrix is tried; and by
+/// how much moves must have become shorter before it is tried again where it was not positive definite.
+const SHORT: f64 = 0.05;
+const SHORTER: f64 = 0.25;
 
 /// The gradient of the augmented Lagrangian over the distance from the constraints, both relative, below which
 /// multipliers are updated.
@@ -72,6 +87,7 @@ pub struct Residuals {
 }
 
 /// Points and multipliers with what was found there.
+#[derive(Clone)]
 struct State {
     points: Vec<DVec3>,
     /// `u`, in rows.
@@ -97,20 +113,34 @@ pub(super) struct Finish<'a> {
     /// The model's size, and the force that moves a point of mean stiffness by it.
     pub(super) size: f64,
     pub(super) force: f64,
+    /// The mean extent of hard constraints.
+    pub(super) extent: f64,
     pub(super) is_parallel: bool,
 }
 
-/// What is kept from one finish to the next: the pattern does not change with the points.
+/// What is kept from one finish to the next, as the pattern does not change with the points.
 #[derive(Default)]
 pub(super) struct Kept {
-    matrix: Option<(SymmetricMatrix, Analysis)>,
+    prepared: Option<Prepared>,
 }
 
-/// The system of a Newton step, ready for any number of right-hand sides.
-pub(super) struct System {
+struct Prepared {
+    matrix: SymmetricMatrix,
     factor: Factor,
+    /// The values of the quadratic part.
+    quadratic: Vec<f64>,
+    /// Where each entry of the blocks of soft and hard constraints belongs among the values; [`TWICE`] where it stands
+    /// for both triangles, as that of a point with itself does where a constraint has it twice.
+    places: Vec<u32>,
+}
+
+const TWICE: u32 = 1 << 31;
+
+/// The derivatives of a Newton step, whose factor is with [`Prepared`].
+struct System {
     soft: Derivatives,
     hard: Derivatives,
+    is_exact: bool,
 }
 
 /// What a finish led to.
@@ -130,6 +160,12 @@ pub(super) fn penalty_behind(penalty: f64) -> f64 {
     STIFFER * penalty
 }
 
+impl System {
+    fn enough(&self) -> f64 {
+        if self.is_exact { ENOUGH_EXACT } else { ENOUGH_CONVEX }
+    }
+}
+
 impl Finish<'_> {
     /// Newton steps from `points` with the multipliers `m u` until both residuals are below their tolerance, or until
     /// no step helps. `goes_on` is asked before each step.
@@ -142,37 +178,47 @@ impl Finish<'_> {
         goes_on: &mut (dyn FnMut() -> bool + Send),
     ) -> Result<Finished> {
         let mut state = self.state(points.to_vec(), u.to_vec());
+        let prepared = self.prepare(kept)?;
         let (mut steps, mut factorisations) = (0, 0);
-        let stiffest = STIFFEST * self.penalty;
+        let (mut is_short, mut short) = (false, SHORT * self.extent);
+        let mut recent = vec![self.merit(&state)];
+        let mut best = state.clone();
         while steps < STEPS && !state.residuals.are_within(tolerance, self.size) && goes_on() {
-            let Some(system) = self.system(&state, kept, &mut factorisations)? else { break };
+            let Some(system) = self.system(&state, is_short, Differences::Forward, prepared, &mut factorisations)?
+            else {
+                break;
+            };
             steps += 1;
-            let Some(next) = self.step(&state, system) else { break };
-            let before = std::mem::replace(&mut state, next).residuals.primal;
-            let is_slow =
-                state.residuals.primal > SLOW * before && state.residuals.dual < state.residuals.primal / self.size;
-            if is_slow && self.penalty < stiffest {
-                state = self.stiffened(state);
+            let limit = recent.iter().rev().take(LOOKS_BACK).copied().fold(0.0, f64::max);
+            let Some(next) = self.step(&state, &system, prepared, limit) else { break };
+            let moves = next.points.iter().zip(&state.points).map(|(new, old)| new.distance(*old));
+            let moved = moves.fold(0.0, f64::max);
+            if is_short && !system.is_exact {
+                short = SHORTER * moved;
+            }
+            is_short = moved <= short;
+            state = next;
+            for _ in 0..CHORDS {
+                if state.residuals.are_within(tolerance, self.size) || !goes_on() {
+                    break;
+                }
+                let (_, whole) = self.solve(&system, prepared, &state.gradient, &state.excess, &state.u, ENOUGH_CHORD);
+                let next = self.moved(&state, &whole, 1.0);
+                let part = if system.is_exact { CHORD_EXACT } else { CHORD_CONVEX };
+                // True for NaN.
+                if !(self.merit(&next) < part * self.merit(&state)) {
+                    break;
+                }
+                state = next;
+            }
+            recent.push(self.merit(&state));
+            if self.merit(&state) < self.merit(&best) {
+                best = state.clone();
             }
         }
-        let capped = self.capped(&state.u);
-        let penalty = self.penalty;
-        Ok(Finished {
-            points: state.points,
-            u: state.u,
-            penalty,
-            residuals: state.residuals,
-            steps,
-            factorisations,
-            capped,
-        })
-    }
-
-    /// The same points and multipliers under a stiffer penalty.
-    fn stiffened(&mut self, state: State) -> State {
-        self.penalty *= STIFFENING;
-        let u = state.u.iter().map(|u| *u / STIFFENING).collect();
-        self.state(state.points, u)
+        let State { points, u, residuals, .. } = best;
+        let capped = self.capped(&u);
+        Ok(Finished { points, u, penalty: self.penalty, residuals, steps, factorisations, capped })
     }
 
     /// The number of constraints whose multiplier is at its cap.
@@ -198,33 +244,51 @@ impl Finish<'_> {
         gradients: &[Vec<DVec3>],
         kept: &mut Kept,
     ) -> Result<Vec<Vec<DVec3>>> {
-        let state = self.state(points.to_vec(), u.to_vec());
-        let Some(mut system) = self.system(&state, kept, &mut 0)? else {
+        self.penalty *= STIFFER_ANSWER;
+        let u = u.iter().map(|u| *u / STIFFER_ANSWER).collect();
+        let state = self.state(points.to_vec(), u);
+        let prepared = self.prepare(kept)?;
+        let indefinite = || {
             let reason = "the solution is no strict minimum: it does not say how it answers";
-            return Err(Error::new(Status::InvalidValue, reason));
+            Error::new(Status::InvalidValue, reason)
         };
-        let none = vec![DVec3::ZERO; u.len()];
-        let answer = |gradient: &Vec<DVec3>| self.solve(&mut system, gradient, &none, &none, OF_AN_ANSWER).1.points;
-        Ok(gradients.iter().map(answer).collect())
+        let system = self.system(&state, true, Differences::Central, prepared, &mut 0)?;
+        let system = system.filter(|system| system.is_exact).ok_or_else(indefinite)?;
+        let none = vec![DVec3::ZERO; state.u.len()];
+        let answer = |gradient: &Vec<DVec3>| {
+            let (_, steps) = self.solve(&system, prepared, gradient, &none, &none, ENOUGH_ANSWER);
+            if steps.is_solved { Ok(steps.points) } else { Err(indefinite()) }
+        };
+        gradients.iter().map(answer).collect()
     }
 
-    /// One step: a state that is nearer, or none.
-    fn step(&mut self, state: &State, mut system: System) -> Option<State> {
-        let (first, whole) = self.solve(&mut system, &state.gradient, &state.excess, &state.u, OF_A_STEP);
-        let moved = |direction: &[DVec3], length: f64| -> Vec<DVec3> {
-            state.points.iter().zip(direction).map(|(p, step)| *p + length * *step).collect()
+    /// The state behind steps of this length.
+    fn moved(&mut self, state: &State, steps: &Steps, length: f64) -> State {
+        let along = |from: &[DVec3], steps: &[DVec3]| -> Vec<DVec3> {
+            from.iter().zip(steps).map(|(start, step)| *start + length * *step).collect()
         };
-        let u = state.u.iter().zip(&whole.multipliers).map(|(u, step)| *u + *step).collect();
-        let next = self.state(moved(&whole.points, 1.0), u);
-        if self.merit(&next) < 0.5 * self.merit(state) {
-            return Some(next);
+        self.state(along(&state.points, &steps.points), along(&state.u, &steps.multipliers))
+    }
+
+    /// One step: a state whose larger residual is below `limit`, or one further down the augmented Lagrangian, or none.
+    fn step(&mut self, state: &State, system: &System, prepared: &mut Prepared, limit: f64) -> Option<State> {
+        let (first, whole) = self.solve(system, prepared, &state.gradient, &state.excess, &state.u, system.enough());
+        let moved = |from: &[DVec3], direction: &[DVec3], length: f64| -> Vec<DVec3> {
+            from.iter().zip(direction).map(|(start, step)| *start + length * *step).collect()
+        };
+        for halving in 0..=HALVINGS {
+            let length = 0.5_f64.powi(halving as i32);
+            let next = self.moved(state, &whole, length);
+            if self.merit(&next) < limit {
+                return Some(next);
+            }
         }
         // The slope of the augmented Lagrangian along the first solve.
         let gradient = self.lagrangian_gradient(&state.gradient, &state.excess);
         let slope: f64 = gradient.iter().zip(&first).map(|(g, step)| g.dot(*step)).sum();
         let mut length = 1.0;
         while slope < 0.0 && length > 1e-3 {
-            let trial = self.state(moved(&first, length), state.u.clone());
+            let trial = self.state(moved(&state.points, &first, length), state.u.clone());
             if trial.value < state.value + 1e-4 * length * slope {
                 // Multipliers follow once the points have nearly found the minimum for those in hand.
                 let left = self.lagrangian_gradient(&trial.gradient, &trial.excess);
@@ -237,7 +301,7 @@ impl Finish<'_> {
             }
             length *= 0.5;
         }
-        (self.merit(&next) < self.merit(state)).then_some(next)
+        None
     }
 
     fn merit(&self, state: &State) -> f64 {
@@ -297,8 +361,64 @@ impl Finish<'_> {
         sums
     }
 
-    /// The system at `state`; `None` if its matrix is not positive definite, whatever is added to the diagonal.
-    fn system(&mut self, state: &State, kept: &mut Kept, factorisations: &mut u32) -> Result<Option<System>> {
+    /// Pattern, factor and places, made once.
+    fn prepare<'k>(&self, kept: &'k mut Kept) -> Result<&'k mut Prepared> {
+        if kept.prepared.is_none() {
+            kept.prepared = Some(self.prepared()?);
+        }
+        let missing = || Error::new(Status::Internal, "the system of the finish is missing");
+        kept.prepared.as_mut().ok_or_else(missing)
+    }
+
+    fn prepared(&self) -> Result<Prepared> {
+        let n = self.quadratic.initial().len();
+        let unknowns = |local: &Local, item: &Item| -> Vec<u32> {
+            local.indices[item.points()].iter().flat_map(|&i| (0..3).map(move |b| 3 * i + b)).collect()
+        };
+        let locals = [&*self.soft, &*self.hard];
+        let mut matrix = SymmetricMatrix::with_pattern(3 * n, |report| {
+            self.quadratic.each_entry(&mut |i, j, _| (0..3).for_each(|b| report(3 * i + b, 3 * j + b)));
+            for local in locals {
+                for item in &local.items {
+                    let own = unknowns(local, item);
+                    (0..own.len()).for_each(|a| own[..=a].iter().for_each(|&b| report(own[a], b)));
+                }
+            }
+        })?;
+        let analysis = Analysis::new(matrix.pattern(), &[])?;
+        let factor = Factor::new(&analysis, matrix.pattern())?;
+        let (pattern, values) = matrix.split();
+        self.quadratic.each_entry(&mut |i, j, value| {
+            for b in 0..3 {
+                let _ = pattern.add(values, 3 * i + b, 3 * j + b, value);
+            }
+        });
+        let quadratic = values.to_vec();
+        let mut places = Vec::new();
+        for local in locals {
+            for item in &local.items {
+                let own = unknowns(local, item);
+                for a in 0..own.len() {
+                    for b in 0..=a {
+                        let place = pattern.place(own[a], own[b]).unwrap_or_default() as u32;
+                        places.push(if a != b && own[a] == own[b] { place | TWICE } else { place });
+                    }
+                }
+            }
+        }
+        Ok(Prepared { matrix, factor, quadratic, places })
+    }
+
+    /// The system at `state`, factorised: the exact one if that is wanted and positive definite, or else the nearest
+    /// convex one. `None` if that is singular within round-off.
+    fn system(
+        &mut self,
+        state: &State,
+        wants_exact: bool,
+        differences: Differences,
+        prepared: &mut Prepared,
+        factorisations: &mut u32,
+    ) -> Result<Option<System>> {
         // Where the state placed the constraints' points; another state may have been looked at since.
         let u = &state.u;
         let mut images = vec![DVec3::ZERO; self.soft.row_count()];
@@ -306,7 +426,7 @@ impl Finish<'_> {
         let mut images = vec![DVec3::ZERO; self.hard.row_count()];
         let shift = |item: &Item, _: &[DVec3], shift: &mut [DVec3]| shift.copy_from_slice(&u[item.rows()]);
         self.hard.place(&state.points, &mut images, shift, self.is_parallel);
-        let soft = Derivatives::new(self.soft, self.size, |_, _, _, _| {}, self.is_parallel);
+        let soft = Derivatives::new(self.soft, self.size, differences, |_, _, _, _| {}, self.is_parallel);
         let (caps, penalty) = (self.caps, self.penalty);
         let elastic = |i: usize, item: &Item, rows: &[DVec3], targets: &mut [DVec3]| {
             let reach = caps[i] / penalty;
@@ -319,86 +439,64 @@ impl Finish<'_> {
                     .for_each(|(target, row)| *target = *row + reach / distance * (*target - *row));
             }
         };
-        let hard = Derivatives::new(self.hard, self.size, elastic, self.is_parallel);
-        let n = state.points.len();
-        if kept.matrix.is_none() {
-            let matrix = SymmetricMatrix::with_pattern(3 * n, |report| {
-                self.quadratic.each_entry(&mut |i, j, _| (0..3).for_each(|b| report(3 * i + b, 3 * j + b)));
-                for local in [&*self.soft, &*self.hard] {
-                    for item in &local.items {
-                        let indices = &local.indices[item.points()];
-                        let unknowns = || indices.iter().flat_map(|&i| (0..3).map(move |b| 3 * i + b));
-                        unknowns().for_each(|i| unknowns().filter(|j| *j <= i).for_each(|j| report(i, j)));
-                    }
-                }
-            })?;
-            let analysis = Analysis::new(matrix.pattern(), &[])?;
-            kept.matrix = Some((matrix, analysis));
+        let hard = Derivatives::new(self.hard, self.size, differences, elastic, self.is_parallel);
+        let mut system = System { soft, hard, is_exact: wants_exact };
+        if wants_exact && self.factorise(&system, prepared, factorisations)? {
+            return Ok(Some(system));
         }
-        let Some((matrix, analysis)) = &mut kept.matrix else { return Ok(None) };
-        let mut factor = Factor::new(analysis, matrix.pattern())?;
-        let mut shift = 0.0;
-        for _ in 0..8 {
-            self.assemble(matrix, &soft, &hard, shift);
-            let is_positive = (0..3 * n).all(|i| matrix.diagonal(i) > 0.0);
-            if is_positive {
-                factor.factorise(matrix, self.is_parallel)?;
-                *factorisations += 1;
-                if !factor.is_singular() {
-                    return Ok(Some(System { factor, soft, hard }));
-                }
-            }
-            shift = if shift == 0.0 { 1e-3 * self.penalty } else { 10.0 * shift };
-        }
-        Ok(None)
+        system = System {
+            soft: system.soft.positive(self.soft, self.is_parallel),
+            hard: system.hard.positive(self.hard, self.is_parallel),
+            is_exact: false,
+        };
+        Ok(self.factorise(&system, prepared, factorisations)?.then_some(system))
     }
 
-    fn assemble(&self, matrix: &mut SymmetricMatrix, soft: &Derivatives, hard: &Derivatives, shift: f64) {
-        let n = matrix.dimension() / 3;
+    /// Assembles and factorises the system's matrix; false if it is not positive definite.
+    fn factorise(&self, system: &System, prepared: &mut Prepared, factorisations: &mut u32) -> Result<bool> {
+        let Prepared { matrix, factor, quadratic, places } = prepared;
         let (pattern, values) = matrix.split();
-        values.fill(0.0);
-        self.quadratic.each_entry(&mut |i, j, value| {
-            for b in 0..3 {
-                let _ = pattern.add(values, 3 * i + b, 3 * j + b, value);
-            }
-        });
-        let mut block = Vec::new();
-        for (local, derivatives, factor) in [(&*self.soft, soft, None), (&*self.hard, hard, Some(self.penalty))] {
+        values.copy_from_slice(quadratic);
+        let (mut block, mut places) = (Vec::new(), places.iter());
+        let both = [(&*self.soft, &system.soft, None), (&*self.hard, &system.hard, Some(self.penalty))];
+        for (local, derivatives, penalty) in both {
             for (i, item) in local.items.iter().enumerate() {
-                let factor = factor.map_or(local.stiffness[i], |penalty| penalty * item.scale * item.scale);
-                let indices = &local.indices[item.points()];
-                derivatives.each_entry(local, i, &mut block, |a, b, value| {
-                    let unknown = |c: usize| 3 * indices[c / 3] + (c % 3) as u32;
-                    let (row, column) = (unknown(a), unknown(b));
-                    // A repeated point meets itself in both triangles.
-                    let times = if row == column && a != b { 2.0 } else { 1.0 };
-                    let _ = pattern.add(values, row, column, times * factor * value);
+                let factor = penalty.map_or(local.stiffness[i], |penalty| penalty * item.scale * item.scale);
+                derivatives.each_entry(local, i, &mut block, |value| {
+                    let Some(&place) = places.next() else { return };
+                    let times = if place & TWICE == 0 { 1.0 } else { 2.0 };
+                    values[(place & !TWICE) as usize] += times * factor * value;
                 });
             }
         }
-        for i in 0..3 * n as u32 {
-            let _ = pattern.add(values, i, i, shift);
+        if !(0..pattern.dimension()).all(|i| pattern.diagonal(values, i) > 0.0) {
+            return Ok(false);
         }
+        factor.factorise(matrix, self.is_parallel)?;
+        *factorisations += 1;
+        Ok(!factor.is_singular())
     }
 
     /// Solves the linearised conditions for steps of points and multipliers: `gradient` is that of the objective,
     /// `excess` and `u` are the state's. Returns the points' step of the first solve, and the whole.
     fn solve(
         &self,
-        system: &mut System,
+        system: &System,
+        prepared: &mut Prepared,
         gradient: &[DVec3],
         excess: &[DVec3],
         u: &[DVec3],
-        updates: Updates,
+        enough: f64,
     ) -> (Vec<DVec3>, Steps) {
         let n = gradient.len();
-        let mut steps = Steps { points: vec![DVec3::ZERO; n], multipliers: vec![DVec3::ZERO; u.len()] };
+        let (points, multipliers) = (vec![DVec3::ZERO; n], vec![DVec3::ZERO; u.len()]);
+        let mut steps = Steps { points, multipliers, is_solved: false };
         let mut first = Vec::new();
         let mut total = excess.to_vec();
-        let (mut smallest, mut enough) = (f64::INFINITY, None);
+        let (mut smallest, mut wanted) = (f64::INFINITY, None);
         let mut next = vec![DVec3::ZERO; u.len()];
         let mut accelerated = Krylov::new(u.len());
-        for update in 1..=updates.most {
+        for update in 1..=UPDATES {
             let mut sums = gradient.to_vec();
             let mut curved = vec![DVec3::ZERO; n];
             self.quadratic.apply(&steps.points, &mut curved);
@@ -411,7 +509,7 @@ impl Finish<'_> {
             // Three unknowns per point: x, y and z of the right-hand side one after the other.
             let mut unknowns: Vec<DVec3> =
                 sums.iter().flat_map(|sum| sum.to_array()).map(|value| DVec3::new(-value, 0.0, 0.0)).collect();
-            system.factor.solve(&mut unknowns, self.is_parallel);
+            prepared.factor.solve(&mut unknowns, self.is_parallel);
             for (step, new) in steps.points.iter_mut().zip(unknowns.chunks_exact(3)) {
                 *step += DVec3::new(new[0].x, new[1].x, new[2].x);
             }
@@ -419,10 +517,11 @@ impl Finish<'_> {
                 first = steps.points.clone();
             }
             let residual = self.next_multipliers(system, excess, u, &steps, &mut next);
-            let enough = *enough.get_or_insert(updates.enough * residual);
+            let wanted = *wanted.get_or_insert(enough * residual);
             smallest = smallest.min(residual);
+            steps.is_solved = residual <= wanted;
             // True for NaN too.
-            if update == updates.most || !(residual > enough && residual < DIVERGED * smallest) {
+            if steps.is_solved || update == UPDATES || !(residual < DIVERGED * smallest) {
                 break;
             }
             accelerated.advance(&mut steps.multipliers, &next, self.is_parallel);
@@ -434,14 +533,15 @@ impl Finish<'_> {
 
     /// Adds the soft constraints' second derivatives times `step`.
     fn add_soft_curvature(&self, system: &System, step: &[DVec3], sums: &mut [DVec3]) {
-        let (mut own, mut rows) = (Vec::new(), Vec::new());
+        let (mut rows, mut bent) = (Vec::new(), Vec::new());
         for (i, item) in self.soft.items.iter().enumerate() {
-            own.clear();
-            own.extend(self.soft.indices[item.points()].iter().map(|&index| step[index as usize]));
             rows.clear();
             rows.resize(item.row_count, DVec3::ZERO);
-            system.soft.residual(self.soft, i, &own, &mut rows);
-            add_transposed(self.soft, item, self.soft.stiffness[i], &rows, sums);
+            self.soft.rows_of(item, step, &mut rows);
+            bent.clear();
+            bent.resize(item.row_count, DVec3::ZERO);
+            system.soft.add_product(i, &rows, &mut bent);
+            add_transposed(self.soft, item, self.soft.stiffness[i], &bent, sums);
         }
     }
 
@@ -472,23 +572,18 @@ impl Finish<'_> {
         self.each_excess(system, excess, steps, |item, e| total[item.rows()].copy_from_slice(e));
     }
 
-    /// Calls `visit` with every constraint and its linearised excess behind `steps`: `e + (A − J) dp + (I − J) du`.
+    /// Calls `visit` with every constraint and its linearised excess behind `steps`: `e + M (A dp + du)`.
     fn each_excess(&self, system: &System, excess: &[DVec3], steps: &Steps, mut visit: impl FnMut(&Item, &[DVec3])) {
-        let (mut own, mut rows) = (Vec::new(), Vec::new());
+        let (mut rows, mut sums) = (Vec::new(), Vec::new());
         for (i, item) in self.hard.items.iter().enumerate() {
-            let lift = &steps.multipliers[item.rows()];
-            own.clear();
-            own.extend(
-                self.hard.indices[item.points()]
-                    .iter()
-                    .enumerate()
-                    .map(|(place, &index)| steps.points[index as usize] + self.hard.lifted(item, place, lift)),
-            );
             rows.clear();
             rows.resize(item.row_count, DVec3::ZERO);
-            system.hard.residual(self.hard, i, &own, &mut rows);
-            rows.iter_mut().zip(&excess[item.rows()]).for_each(|(row, e)| *row += *e);
-            visit(item, &rows);
+            self.hard.rows_of(item, &steps.points, &mut rows);
+            rows.iter_mut().zip(&steps.multipliers[item.rows()]).for_each(|(row, lift)| *row += *lift);
+            sums.clear();
+            sums.extend_from_slice(&excess[item.rows()]);
+            system.hard.add_product(i, &rows, &mut sums);
+            visit(item, &sums);
         }
     }
 }
@@ -533,6 +628,8 @@ impl Krylov {
 pub(super) struct Steps {
     pub(super) points: Vec<DVec3>,
     pub(super) multipliers: Vec<DVec3>,
+    /// True if what was left of the linearised constraints fell as far as asked for.
+    is_solved: bool,
 }
 
 impl Residuals {

@@ -177,6 +177,25 @@ impl Local {
         }
     }
 
+    /// `A⁺` of one constraint at its point `place` and `row`.
+    pub(super) fn lifted_row(&self, item: &Item, place: usize, row: usize) -> f64 {
+        match self.matrices(item) {
+            None => f64::from(u8::from(place == row)),
+            Some((_, inverse)) => inverse[place * item.row_count + row],
+        }
+    }
+
+    /// `A A⁺` of one constraint: 1 on the diagonal and 0 beside it, but for rows that depend on each other.
+    pub(super) fn image_of_row(&self, item: &Item, row: usize, lifted: usize) -> f64 {
+        match self.matrices(item) {
+            None => f64::from(u8::from(row == lifted)) - 1.0 / item.row_count as f64,
+            Some((a, _)) => {
+                let a = &a[row * item.point_count..][..item.point_count];
+                a.iter().enumerate().map(|(place, a)| a * self.lifted_row(item, place, lifted)).sum()
+            }
+        }
+    }
+
     /// Moves the constraints' own points to `x + A⁺ u`, with `u` written for each constraint by `shift(item, rows A x,
     /// u)`, and keeps `A x` in `rows`.
     pub(super) fn place(

@@ -216,7 +216,7 @@ impl Solver {
         let mut explorer = std::mem::take(&mut self.explorer);
         let start = self.points.clone();
         let result = explorer.prepare(self).and_then(|mut engine| {
-            let is_long = self.thread_count != 1 && self.points.len() >= PARALLEL_POINTS;
+            let is_long = self.thread_count != 1 && self.points.len() >= 1000;
             engine.pool = if is_long { self.pool() } else { None };
             let result = engine.run(self, &explorer, options, wants_finish, started, progress);
             explorer.memory.take(&engine);
