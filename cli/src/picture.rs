@@ -20,6 +20,8 @@ const HEADER: f64 = 104.0;
 const FOOTER: f64 = 44.0;
 /// The room for the legend at the right.
 const LEGEND: f64 = 210.0;
+const LEGEND_TOP: f64 = HEADER + 40.0;
+const LEGEND_HEIGHT: f64 = 260.0;
 /// Height over width of the room for one mesh, at most.
 const MAX_ASPECT: f64 = 1.1;
 /// The share of a scale from which on a colour differs from that of 0.
@@ -109,7 +111,8 @@ impl Picture<'_> {
         let legend = if self.scale.is_some() { LEGEND } else { 0.0 };
         let panel_width = (WIDTH - 2.0 * MARGIN - legend) / columns as f64;
         let panel_height = (panel_width * (size.y / size.x).clamp(0.45, MAX_ASPECT) + 70.0).min(820.0);
-        let height = HEADER + rows as f64 * panel_height + FOOTER;
+        let needed_by_legend = if self.scale.is_some() { LEGEND_TOP + LEGEND_HEIGHT + FOOTER } else { 0.0 };
+        let height = (HEADER + rows as f64 * panel_height + FOOTER).max(needed_by_legend);
 
         let mut document = Document::new()
             .set("viewBox", (0, 0, WIDTH, height.ceil()))
@@ -130,7 +133,7 @@ impl Picture<'_> {
             document = document.add(self.draw(panel, &room, &camera, frame));
         }
         if let Some(scale) = &self.scale {
-            document = document.add(legend_of(scale, WIDTH - MARGIN - 92.0, HEADER + 40.0));
+            document = document.add(legend_of(scale, WIDTH - MARGIN - 92.0, LEGEND_TOP));
         }
         document.to_string()
     }
@@ -316,7 +319,7 @@ fn pointer(points: impl Iterator<Item = DVec2>) -> Group {
 }
 
 fn legend_of(scale: &Scale, left: f64, top: f64) -> Group {
-    let (width, height) = (20.0, 260.0);
+    let (width, height) = (20.0, LEGEND_HEIGHT);
     let title = words(&scale.title, WIDTH - MARGIN, top - 24.0, 14.0, INK).set("font-weight", "bold");
     let mut group = Group::new().add(title.set("text-anchor", "end"));
     let strips = 130;

@@ -42,13 +42,10 @@ pub fn course(n: usize, reference: &Path) -> Result<Value> {
     let steps = found.newton_steps;
     seen.push((report.iterations + steps, seconds, session.solver.points().to_vec()));
 
-    let distance = |points: &[DVec3]| {
-        points.iter().zip(&solution).map(|(a, b)| a.distance_squared(*b)).sum::<f64>().sqrt()
-    };
+    let distance =
+        |points: &[DVec3]| points.iter().zip(&solution).map(|(a, b)| a.distance_squared(*b)).sum::<f64>().sqrt();
     let at_start = distance(&mesh.points);
-    let iteration = |(iteration, seconds, points): &(u32, f64, Vec<DVec3>)| {
-        json!({"iteration": iteration, "seconds": seconds, "delta": distance(points) / at_start})
-    };
+    let iteration = |(iteration, seconds, points): &(u32, f64, Vec<DVec3>)| json!({"iteration": iteration, "seconds": seconds, "delta": distance(points) / at_start});
     let excess = largest_diagonal_distance(&session.mesh()) - bound;
     Ok(json!({
         "n": n,

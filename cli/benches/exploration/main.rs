@@ -25,7 +25,11 @@ fn main() -> Result<()> {
     match words.as_slice() {
         ["figure12", n, reference] => println!("{}", figure12::course(n.parse()?, Path::new(reference))?),
         ["costa"] => println!("{}", costa::group()?),
-        ["drag"] => println!("{}", drag::group()?),
+        ["drag"] => {
+            for held in [drag::Held::Diagonals, drag::Held::Planes] {
+                println!("{}", drag::group(held)?);
+            }
+        }
         ["figures", folder, rest @ ..] => figures::draw(Path::new(folder), rest.first().copied())?,
         _ => println!("{USAGE}"),
     }

@@ -13,14 +13,17 @@ use super::{EXACT, Kept, Words, picture, scale};
 use crate::group::Group;
 use crate::session::{Session, irregularity, largest_plane_distance};
 
+/// Less than usual, so that a drag makes a wide hill.
+const CLOSENESS: f64 = 0.01;
+
 /// The weight of regular polygons.
 const REGULAR: f64 = 1.0;
 
 /// Where the middle is drawn to, in mean edges from its place.
 const POSITIONS: [(&str, DVec3); 3] = [
     ("at rest: planar", DVec3::ZERO),
-    ("dragged up", DVec3::new(0.0, 0.0, 3.0)),
-    ("dragged up and aside", DVec3::new(2.0, 1.0, 2.0)),
+    ("dragged up", DVec3::new(0.0, 0.0, 2.0)),
+    ("dragged up and aside", DVec3::new(1.5, 0.5, 1.5)),
 ];
 
 /// A dome with a wave over 9 × 9 hexagons: few of them are planar.
@@ -47,7 +50,7 @@ fn middle_of(mesh: &Mesh) -> Vec<u32> {
 }
 
 fn session(mesh: &Mesh, is_regular: bool) -> Result<Session> {
-    let mut session = Session::new(mesh, &Objective::default())?;
+    let mut session = Session::new(mesh, &Objective { closeness_weight: CLOSENESS, ..Objective::default() })?;
     session.add("Plane", &session.polygons(), &[], 1.0, true)?;
     if is_regular {
         session.add("RegularPolygon", &mesh.faces, &[], REGULAR, false)?;
@@ -67,7 +70,7 @@ pub fn group(folder: &Path) -> Result<Group> {
     let caption = |mesh: &Mesh| {
         let all = mesh.faces.iter().map(|face| regularity(&mesh.corners(face)));
         let mean = 100.0 * all.sum::<f64>() / mesh.faces.len() as f64;
-        format!("planar to {:.1e} of an edge; regular to {mean:.1} %", largest_plane_distance(mesh) * share / 100.0)
+        format!("planar to {:.1e} of an edge; irregularity {mean:.1} %", largest_plane_distance(mesh) * share / 100.0)
     };
     let mut kept = vec![Kept::faces(&with, "start", plane, &[]).caption(caption(&mesh))];
     let (mut worst, mut most, mut pull) = (0.0_f64, 0.0_f64, 0.0_f64);

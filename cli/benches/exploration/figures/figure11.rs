@@ -45,7 +45,8 @@ pub fn group(folder: &Path) -> Result<Group> {
         let [low, high] = range(session);
         format!("edges {low:.3} to {high:.3}; irregularity {:.2}", irregularity(&session.mesh()))
     };
-    let first = Kept::edges(&session, "start: planar, and where it is drawn to", percent, &shown).caption(caption(&session));
+    let first =
+        Kept::edges(&session, "start: planar, and where it is drawn to", percent, &shown).caption(caption(&session));
     let edges = session.edge_lists();
     session.add("EdgeLength", &edges, &[edge * (1.0 - RANGE), edge * (1.0 + RANGE)], 1.0, true)?;
     let (mut panels, mut excess, mut worst, mut irregular) = (vec![first], 0.0_f64, 0.0_f64, Vec::new());
@@ -53,8 +54,7 @@ pub fn group(folder: &Path) -> Result<Group> {
         if panels.len() == 2 {
             session.add("RegularPolygon", &mesh.faces, &[], REGULAR, false)?;
         }
-        let r = session.solve()?;
-        eprintln!("{:?} {:?}", r.outcome, session.solver.found().map(|f| (f.sweeps, f.newton_steps, f.is_solution)));
+        session.solve()?;
         let [low, high] = range(&session);
         excess = excess.max(1.0 - RANGE - low).max(high - 1.0 - RANGE);
         worst = worst.max(largest_plane_distance(&session.mesh()) / edge);

@@ -12,8 +12,7 @@ use crate::group::Group;
 use crate::session::{Session, largest_diagonal_distance, largest_plane_distance};
 
 pub fn group(folder: &Path) -> Result<Group> {
-    let name = std::env::var("F5").unwrap_or("tubemesh".into());
-    let mesh = file::read(format!("examples/meshes/{name}.obj"))?;
+    let mesh = file::read("examples/meshes/tubemesh.obj")?;
     let mut session = Session::new(&mesh, &Objective::default())?;
     let planes = session.add("Plane", &session.polygons(), &[], 1.0, true)?;
     session.hold_boundary()?;
@@ -22,15 +21,21 @@ pub fn group(folder: &Path) -> Result<Group> {
     let panel = |session: &Session, title: &str, caption: String| -> Result<Kept> {
         let moved = moved(session)?;
         let mut kept = Kept::faces(session, title, |_| 0.0, &[]).caption(caption);
-        let of_face = |face: &Vec<u32>| face.iter().map(|&point| moved[point as usize]).sum::<f64>() / face.len() as f64;
+        let of_face =
+            |face: &Vec<u32>| face.iter().map(|&point| moved[point as usize]).sum::<f64>() / face.len() as f64;
         kept.values = mesh.faces.iter().map(|face| 100.0 * of_face(face) / session.edge).collect();
         Ok(kept)
     };
-    let start = panel(&session, "start", format!("diagonals {:.3} of an edge apart", largest_diagonal_distance(&mesh) / session.edge))?;
+    let start = panel(
+        &session,
+        "start",
+        format!("diagonals {:.3} of an edge apart", largest_diagonal_distance(&mesh) / session.edge),
+    )?;
     session.solve()?;
     let planar = session.terms();
     let worst_plane = largest_plane_distance(&session.mesh()) / session.edge;
-    let with_planes = panel(&session, "hard planes", format!("objective {:.4}, fairness {:.4}", planar.sum(), planar.fairness))?;
+    let with_planes =
+        panel(&session, "hard planes", format!("objective {:.4}, fairness {:.4}", planar.sum(), planar.fairness))?;
     // From the planar shape, in the same session.
     session.remove(&planes)?;
     let bound = 0.01 * session.edge;
@@ -38,7 +43,11 @@ pub fn group(folder: &Path) -> Result<Group> {
     session.solve()?;
     let bounded = session.terms();
     let excess = (largest_diagonal_distance(&session.mesh()) - bound).max(0.0) / session.edge;
-    let with_bounds = panel(&session, "diagonals within 1 % of an edge", format!("objective {:.4}, fairness {:.4}", bounded.sum(), bounded.fairness))?;
+    let with_bounds = panel(
+        &session,
+        "diagonals within 1 % of an edge",
+        format!("objective {:.4}, fairness {:.4}", bounded.sum(), bounded.fairness),
+    )?;
     let mut group = Group::new(
         "Fig. 5: planar faces against bounded diagonals",
         "tubemesh, 171 quads; the boundary is held; the second solve starts from the planar shape, in the same session.",

@@ -6,6 +6,7 @@ use anyhow::Result;
 use glam::DVec3;
 use shapeop::mesh::patterns::translation_surface;
 use shapeop::problem::Objective;
+use shapeop_cli::colours::Scale;
 
 use super::{EXACT, Kept, Words, picture, scale};
 use crate::group::Group;
@@ -17,9 +18,9 @@ const HANDLES: [[usize; 2]; 2] = [[8, 8], [16, 15]];
 
 /// Where the two are drawn to, in mean edges from their places.
 const POSITIONS: [(&str, [DVec3; 2]); 3] = [
-    ("one up", [DVec3::new(0.0, 0.0, 4.0), DVec3::ZERO]),
-    ("one up, one down", [DVec3::new(0.0, 0.0, 4.0), DVec3::new(0.0, 0.0, -4.0)]),
-    ("and aside", [DVec3::new(2.0, -1.0, 4.0), DVec3::new(-1.0, 2.0, -4.0)]),
+    ("one up", [DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO]),
+    ("one up, one down", [DVec3::new(0.0, 0.0, 3.0), DVec3::new(0.0, 0.0, -3.0)]),
+    ("and aside", [DVec3::new(1.5, -1.0, 3.0), DVec3::new(-1.0, 1.5, -3.0)]),
 ];
 
 /// The largest distance of a handle from its target over how far it is drawn.
@@ -39,8 +40,7 @@ pub fn group(folder: &Path) -> Result<Group> {
     let (mut worst, mut pull) = (0.0_f64, 0.0_f64);
     for (title, to) in POSITIONS {
         handles.iter().zip(to).try_for_each(|(&point, to)| session.pull(point, to))?;
-        let r = session.solve()?;
-        eprintln!("{:?}", r.outcome);
+        session.solve()?;
         let apart = largest_diagonal_distance(&session.mesh());
         worst = worst.max((apart - bound) / session.edge);
         let far = to.iter().map(|to| to.length()).fold(0.0, f64::max);
@@ -55,7 +55,7 @@ pub fn group(folder: &Path) -> Result<Group> {
     let words = Words {
         title: "Fig. 9: two handles dragged, diagonals within 1 % of an edge",
         subtitle: "A planar surface of 24 × 24 quads; the boundary is held; blue: the handles",
-        scale: scale("diagonals / edge", "%", 1.0),
+        scale: Scale { mark: Some((1.0, "bound".to_owned())), ..scale("diagonals / edge", "%", 2.0) },
     };
     group.picture = Some(picture(folder, "figure9", words, &session.edges, &kept)?);
     group.at_most("diagonals beyond the bound / mean edge, all positions", worst, EXACT);
