@@ -33,7 +33,7 @@ fn cases() -> Result<[Case; 3]> {
     }
     Ok([
         Case {
-            name: "hard planes, soft regular polygons, 7 × 7 points",
+            name: "hard planes, soft regular polygons",
             mesh: translation_surface(7)?,
             hard: ("Plane", |session| (session.polygons(), Vec::new())),
             soft: ("RegularPolygon", 0.3, Session::polygons),
@@ -42,7 +42,7 @@ fn cases() -> Result<[Case; 3]> {
             step: 0.04,
         },
         Case {
-            name: "hard bounds of diagonals, soft regular polygons, 9 × 9 points",
+            name: "hard diagonals, soft regular polygons",
             mesh: translation_surface(9)?,
             hard: ("DiagonalDistance", |session| (session.polygons(), vec![0.01 * session.edge])),
             soft: ("RegularPolygon", 0.3, Session::polygons),
@@ -51,7 +51,7 @@ fn cases() -> Result<[Case; 3]> {
             step: 1e-3,
         },
         Case {
-            name: "hard bounds of edges, soft planes, triangles and hexagons",
+            name: "hard edge lengths, soft planes",
             mesh: dome,
             hard: ("EdgeLength", |session| (session.edge_lists(), vec![0.97 * session.edge, 1.03 * session.edge])),
             soft: ("Plane", 2.0, Session::polygons),
@@ -92,7 +92,8 @@ impl Case {
 pub fn group() -> Result<Group> {
     let mut group = Group::new(
         "sensitivities against central differences of solutions",
-        "d points / d ln weight, relative to its length over all points; the worst of the classes of weights.",
+        "d points / d ln weight over all points, relative, the worst class of weights. Surfaces of 7 × 7 and 9 × 9 points, a\n\
+         tri-hex mesh of 4 × 4 hexagons.",
     );
     for case in cases()? {
         let mut session = case.solution([1.0; 4])?;
@@ -111,7 +112,7 @@ pub fn group() -> Result<Group> {
             let error = (0..moved.len()).map(|i| slope(i).distance_squared(moved[i])).sum::<f64>().sqrt();
             worst = worst.max(error / size);
         }
-        group.at_most(&format!("{}: worst of {} classes", case.name, found.classes.len()), worst, ERROR);
+        group.at_most(&format!("{}, {} classes", case.name, found.classes.len()), worst, ERROR);
     }
     Ok(group)
 }

@@ -108,10 +108,11 @@ impl Figures {
     }
 }
 
-/// A number in four digits, plainly or in powers of ten.
+/// A number in four digits, plainly or in powers of ten; a whole one as such.
 pub fn number(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
+        size if size < 1e5 && value.fract() == 0.0 => format!("{value}"),
         1e-3..1e5 => format!("{value:.4}"),
         _ => format!("{value:.1e}"),
     }

@@ -129,10 +129,10 @@ fn test_output(which: &[&str]) -> Result<String> {
     shell::output(&mut command)
 }
 
-/// The words behind `head` in every line that has it, at its start or behind the name of a test.
+/// The words behind `head` in every line that begins with it, behind the dots of the tests that passed before.
 fn lines_with<'a>(text: &'a str, head: &'a str) -> impl Iterator<Item = Vec<&'a str>> {
     let behind = move |line: &'a str| {
-        let rest = line.strip_prefix(head).or_else(|| Some(line.split_once("... ")?.1.strip_prefix(head)?));
+        let rest = line.trim_start_matches('.').strip_prefix(head);
         rest.map(|rest| rest.split_whitespace().collect())
     };
     text.lines().filter_map(behind)
