@@ -420,3 +420,31 @@ fn newell_normal(corners: &[DVec3]) -> DVec3 {
     let Some(&first) = corners.first() else { return DVec3::ZERO };
     corners.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first)).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_legend_ends_above_the_lower_edge_however_flat_the_meshes_are() {
+        let points = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [9.0, 1.0, 0.0], [0.0, 1.0, 0.0]].map(DVec3::from).to_vec();
+        let mesh = Mesh { points, faces: vec![vec![0, 1, 2, 3]] };
+        let panel = || Panel {
+            mesh: &mesh,
+            edges: &[],
+            title: String::new(),
+            values: vec![0.5],
+            on: On::Faces,
+            pointed_at: None,
+            caption: String::new(),
+            handles: Vec::new(),
+        };
+        let (title, range, mark, end_words) = (String::new(), [0.0, 1.0], None, ["", ""]);
+        let scale = Some(Scale { title, unit: "%", range, is_diverging: false, mark, end_words });
+        let panels = (0..3).map(|_| panel()).collect();
+        let picture = Picture { title: String::new(), subtitle: String::new(), panels, scale, fits_each: false };
+        let svg = picture.to_svg();
+        let height = svg.split_once("viewBox=\"0 0 1280 ").and_then(|(_, rest)| rest.split_once('"')).unwrap().0;
+        assert!(height.parse::<f64>().unwrap() >= LEGEND_TOP + LEGEND_HEIGHT + 20.0, "{height}");
+    }
+}
