@@ -16,8 +16,10 @@ const ERROR: f64 = 1e-5;
 struct Case {
     name: &'static str,
     mesh: Mesh,
-    hard: (&'static str, fn(&Session) -> (Vec<Vec<u32>>, Vec<f64>)),
-    soft: (&'static str, f64, fn(&Session) -> Vec<Vec<u32>>),
+    /// On all polygons, or all edges where it is about edges, with its bounds in mean edges.
+    hard: (&'static str, &'static [f64]),
+    /// On all polygons, with its weight.
+    soft: (&'static str, f64),
     /// Points that are held; empty: the boundary.
     held: &'static [u32],
     /// The point that is drawn away, and by how many mean edges.
@@ -35,8 +37,8 @@ fn cases() -> Result<[Case; 3]> {
         Case {
             name: "hard planes, soft regular polygons",
             mesh: translation_surface(7)?,
-            hard: ("Plane", |session| (session.polygons(), Vec::new())),
-            soft: ("RegularPolygon", 0.3, Session::polygons),
+            hard: ("Plane", &[]),
+            soft: ("RegularPolygon", 0.3),
             held: &[0, 6, 42, 48],
             pull: (24, DVec3::new(0.1, 0.0, 0.5)),
             step: 0.04,
@@ -44,8 +46,8 @@ fn cases() -> Result<[Case; 3]> {
         Case {
             name: "hard diagonals, soft regular polygons",
             mesh: translation_surface(9)?,
-            hard: ("DiagonalDistance", |session| (session.polygons(), vec![0.01 * session.edge])),
-            soft: ("RegularPolygon", 0.3, Session::polygons),
+            hard: ("DiagonalDistance", &[0.01]),
+            soft: ("RegularPolygon", 0.3),
             held: &[],
             pull: (40, DVec3::new(0.0, 0.1, 0.6)),
             step: 1e-3,
@@ -53,8 +55,8 @@ fn cases() -> Result<[Case; 3]> {
         Case {
             name: "hard edge lengths, soft planes",
             mesh: dome,
-            hard: ("EdgeLength", |session| (session.edge_lists(), vec![0.97 * session.edge, 1.03 * session.edge])),
-            soft: ("Plane", 2.0, Session::polygons),
+            hard: ("EdgeLength", &[0.97, 1.03]),
+            soft: ("Plane", 2.0),
             held: &[],
             pull: (20, DVec3::new(0.2, 0.0, 0.8)),
             step: 1e-3,
@@ -74,10 +76,12 @@ impl Case {
             ..weights
         };
         let mut session = Session::new(&self.mesh, &objective)?;
-        let (on, scalars) = (self.hard.1)(&session);
-        session.add(self.hard.0, &on, &scalars, 1.0, true)?;
-        let on = (self.soft.2)(&session);
-        session.add(self.soft.0, &on, &[], factors[3] * self.soft.1, false)?;
+        let (hard, bounds) = self.hard;
+        let on = if hard == "EdgeLength" { session.edge_lists() } else { session.polygons() };
+        let bounds: Vec<f64> = bounds.iter().map(|bound| bound * session.edge).collect();
+        session.add(hard, &on, &bounds, 1.0, true)?;
+        let (soft, weight) = self.soft;
+        session.add(soft, &session.polygons(), &[], factors[3] * weight, false)?;
         match self.held {
             [] => session.hold_boundary()?,
             held => held.iter().try_for_each(|&point| session.pull(point, DVec3::ZERO))?,

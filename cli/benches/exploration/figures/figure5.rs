@@ -17,9 +17,8 @@ pub fn group(folder: &Path) -> Result<Group> {
     let planes = session.add("Plane", &session.polygons(), &[], 1.0, true)?;
     session.hold_boundary()?;
     session.solver.init()?;
-    let moved = |session: &Session| displacements(&session.start.points, session.solver.points());
     let panel = |session: &Session, title: &str, caption: String| -> Result<Kept> {
-        let moved = moved(session)?;
+        let moved = displacements(&mesh.points, session.solver.points())?;
         let mut kept = Kept::faces(session, title, |_| 0.0, &[]).caption(caption);
         let of_face =
             |face: &Vec<u32>| face.iter().map(|&point| moved[point as usize]).sum::<f64>() / face.len() as f64;
