@@ -2,19 +2,15 @@
 //! could not do.
 
 mod args;
-mod camera;
 mod cells;
-mod colours;
 mod commands;
 mod drag;
 mod exploration;
 mod moves;
 mod output;
-mod picture;
 mod plot;
 mod progress;
 mod quality;
-mod raster;
 mod report;
 mod run;
 mod shown;
@@ -26,6 +22,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Cli, Command};
+use shapeop_cli::{colours, picture, raster};
 
 /// How a command ended that did not fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

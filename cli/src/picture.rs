@@ -20,6 +20,8 @@ const HEADER: f64 = 104.0;
 const FOOTER: f64 = 44.0;
 /// The room for the legend at the right.
 const LEGEND: f64 = 210.0;
+const LEGEND_TOP: f64 = HEADER + 40.0;
+const LEGEND_HEIGHT: f64 = 260.0;
 /// Height over width of the room for one mesh, at most.
 const MAX_ASPECT: f64 = 1.1;
 /// The share of a scale from which on a colour differs from that of 0.
@@ -109,7 +111,8 @@ impl Picture<'_> {
         let legend = if self.scale.is_some() { LEGEND } else { 0.0 };
         let panel_width = (WIDTH - 2.0 * MARGIN - legend) / columns as f64;
         let panel_height = (panel_width * (size.y / size.x).clamp(0.45, MAX_ASPECT) + 70.0).min(820.0);
-        let height = HEADER + rows as f64 * panel_height + FOOTER;
+        let needed_by_legend = if self.scale.is_some() { LEGEND_TOP + LEGEND_HEIGHT + FOOTER } else { 0.0 };
+        let height = (HEADER + rows as f64 * panel_height + FOOTER).max(needed_by_legend);
 
         let mut document = Document::new()
             .set("viewBox", (0, 0, WIDTH, height.ceil()))
@@ -130,7 +133,7 @@ impl Picture<'_> {
             document = document.add(self.draw(panel, &room, &camera, frame));
         }
         if let Some(scale) = &self.scale {
-            document = document.add(legend_of(scale, WIDTH - MARGIN - 92.0, HEADER + 40.0));
+            document = document.add(legend_of(scale, WIDTH - MARGIN - 92.0, LEGEND_TOP));
         }
         document.to_string()
     }
@@ -316,7 +319,7 @@ fn pointer(points: impl Iterator<Item = DVec2>) -> Group {
 }
 
 fn legend_of(scale: &Scale, left: f64, top: f64) -> Group {
-    let (width, height) = (20.0, 260.0);
+    let (width, height) = (20.0, LEGEND_HEIGHT);
     let title = words(&scale.title, WIDTH - MARGIN, top - 24.0, 14.0, INK).set("font-weight", "bold");
     let mut group = Group::new().add(title.set("text-anchor", "end"));
     let strips = 130;
@@ -416,4 +419,32 @@ fn normals_of(mesh: &Mesh) -> Vec<DVec3> {
 fn newell_normal(corners: &[DVec3]) -> DVec3 {
     let Some(&first) = corners.first() else { return DVec3::ZERO };
     corners.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_legend_ends_above_the_lower_edge_however_flat_the_meshes_are() {
+        let points = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [9.0, 1.0, 0.0], [0.0, 1.0, 0.0]].map(DVec3::from).to_vec();
+        let mesh = Mesh { points, faces: vec![vec![0, 1, 2, 3]] };
+        let panel = || Panel {
+            mesh: &mesh,
+            edges: &[],
+            title: String::new(),
+            values: vec![0.5],
+            on: On::Faces,
+            pointed_at: None,
+            caption: String::new(),
+            handles: Vec::new(),
+        };
+        let (title, range, mark, end_words) = (String::new(), [0.0, 1.0], None, ["", ""]);
+        let scale = Some(Scale { title, unit: "%", range, is_diverging: false, mark, end_words });
+        let panels = (0..3).map(|_| panel()).collect();
+        let picture = Picture { title: String::new(), subtitle: String::new(), panels, scale, fits_each: false };
+        let svg = picture.to_svg();
+        let height = svg.split_once("viewBox=\"0 0 1280 ").and_then(|(_, rest)| rest.split_once('"')).unwrap().0;
+        assert!(height.parse::<f64>().unwrap() >= LEGEND_TOP + LEGEND_HEIGHT + 20.0, "{height}");
+    }
 }

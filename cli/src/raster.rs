@@ -26,13 +26,18 @@ fn fonts() -> Arc<fontdb::Database> {
 
 /// The picture as PNG on white.
 pub fn png(svg: &str) -> Result<Vec<u8>> {
+    png_at(svg, SCALE)
+}
+
+/// The same with so many pixels per unit of the SVG.
+pub fn png_at(svg: &str, scale: f32) -> Result<Vec<u8>> {
     let options = Options { fontdb: fonts(), font_family: "Noto Sans".to_owned(), ..Options::default() };
     let tree = Tree::from_str(svg, &options).context("the picture could not be laid out")?;
     let size = tree.size();
-    let (width, height) = ((size.width() * SCALE).ceil() as u32, (size.height() * SCALE).ceil() as u32);
+    let (width, height) = ((size.width() * scale).ceil() as u32, (size.height() * scale).ceil() as u32);
     let mut pixels = Pixmap::new(width, height).context("the picture has no size")?;
     pixels.fill(Color::WHITE);
-    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+    resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
     pixels.encode_png().context("the picture could not be compressed")
 }
 

@@ -30,6 +30,9 @@ const GRASSHOPPER_REQUIREMENTS: [&str; 6] = [
     "examples/paper/requirements.txt",
 ];
 
+/// What the peers of exploration and their tests install.
+const PEER_REQUIREMENTS: [&str; 3] = ["--requirement", "benches/peers/requirements.txt", "pytest==9.2.0"];
+
 /// Packages that carry user objects of other authors, which ours are compared with.
 const PUBLIC_FILES: [&str; 3] = ["compas==2.15.1", "compas-fab==2.0.1", "ladybug-grasshopper==1.72.5"];
 
@@ -45,7 +48,7 @@ const CSHARP_TESTS: Step = &[
 ];
 
 /// The tests of each binding beside the three problems.
-pub const SUITES: [Suite; 17] = [
+pub const SUITES: [Suite; 18] = [
     Suite {
         name: "format, lints and types of the Python sources",
         environment: &[],
@@ -162,6 +165,11 @@ pub const SUITES: [Suite; 17] = [
         steps: &[&["{python}", "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "{source}/examples/paper"]],
     },
     Suite {
+        name: "solvers of hard constraints to compare with",
+        environment: &[("PYTHONDONTWRITEBYTECODE", "1")],
+        steps: &[&["{peers}", "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "{source}/benches/peers"]],
+    },
+    Suite {
         name: "tests of the Python package",
         environment: &[],
         steps: &[&["{python}", "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "{source}/bindings/python"]],
@@ -237,6 +245,9 @@ pub fn set_up(profile: &str) -> Result<Places> {
     places.set("ghfiles", public_files(&grasshopper, root.join("target/ghfiles"))?);
     places.set("ghpython", grasshopper);
     places.set("python", python);
+    if let Some(python) = peers()? {
+        places.set("peers", python);
+    }
     // Those of Rhino 7 and Rhino 8.
     for (name, version) in [("python27", "2.7"), ("python39", "3.9")] {
         if let Some(python) = setup::python(version) {
@@ -251,6 +262,15 @@ fn environment(folder: &Path, requirements: &[&str]) -> Result<PathBuf> {
     let found = ["3.12", "3.11", "3.10"].iter().find_map(|version| setup::python(version));
     let requirements: Vec<String> = requirements.iter().map(|&each| each.to_owned()).collect();
     setup::environment(&found.map_or_else(setup::any_python, Ok)?, folder, &requirements)
+}
+
+/// The Python of `benches/peers`; `None` without a CPython for which all that they need exists.
+pub fn peers() -> Result<Option<PathBuf>> {
+    let Some(python) = ["3.13", "3.12", "3.11"].iter().find_map(|version| setup::python(version)) else {
+        return Ok(None);
+    };
+    let requirements = PEER_REQUIREMENTS.map(str::to_owned);
+    setup::environment(&python, &shell::root().join("target/peers"), &requirements).map(Some)
 }
 
 /// The folder with the wheels of the public files; downloaded once.

@@ -249,15 +249,15 @@ fn line(case: &Case) -> String {
     )
 }
 
-/// Builds `benches/problems.rs`; returns the program.
-fn build(profile: &str) -> Result<PathBuf> {
+/// Builds a benchmark; returns the program.
+pub fn build(bench: &str, profile: &str) -> Result<PathBuf> {
     // With the workspace's selection of packages, so that what was built for other commands is used.
     let mut cargo = shell::cargo();
-    cargo.args(["build", "--quiet", "--workspace", "--bench", "problems", "--message-format", "json"]);
+    cargo.args(["build", "--quiet", "--workspace", "--bench", bench, "--message-format", "json"]);
     let messages = shell::output(cargo.args(["--profile", profile]))?;
     let mut programs = messages.lines().filter_map(|line| {
         let message: Value = serde_json::from_str(line).ok()?;
-        let is_it = message["reason"] == "compiler-artifact" && message["target"]["name"] == "problems";
+        let is_it = message["reason"] == "compiler-artifact" && message["target"]["name"] == bench;
         Some(PathBuf::from(message["executable"].as_str().filter(|_| is_it)?))
     });
     programs.next_back().context("Cargo did not say where the benchmark is")
@@ -277,7 +277,7 @@ type Runs = Vec<[f64; 3]>;
 impl Runner {
     /// Builds this library's program.
     pub fn new(profile: &str, peer: Result<PathBuf>, folder: PathBuf) -> Result<Self> {
-        Ok(Self { program: build(profile)?, peer, folder })
+        Ok(Self { program: build("problems", profile)?, peer, folder })
     }
 
     fn case(&self, problem: &str, size: u32, peer_has_it: bool, plan: &Plan) -> Result<Case> {

@@ -6,7 +6,7 @@ mod machine;
 pub mod measure;
 mod page;
 mod peer;
-mod plot;
+pub mod plot;
 
 use std::fs;
 use std::path::PathBuf;

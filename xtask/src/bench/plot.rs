@@ -8,13 +8,15 @@ use super::energies::{Energies, Problem, name};
 use super::measure::{Case, Measurements};
 
 /// Width and height of a plot in the units of its SVG.
-const SIZE: (u32, u32) = (1000, 640);
+pub const SIZE: (u32, u32) = (1000, 640);
 
 /// The backend rounds coordinates to whole units: it draws so many times larger, and the view is shrunk.
-const FINENESS: u32 = 4;
+pub const FINENESS: u32 = 4;
 
-const INK: RGBColor = RGBColor(0x1f, 0x24, 0x30);
-const GRID: RGBColor = RGBColor(0xe3, 0xe6, 0xeb);
+/// The colour of text and axes.
+pub const INK: RGBColor = RGBColor(0x1f, 0x24, 0x30);
+/// The colour of grid lines.
+pub const GRID: RGBColor = RGBColor(0xe3, 0xe6, 0xeb);
 
 /// A colour per problem that both libraries have.
 const COLOURS: [(&str, RGBColor); 4] = [
@@ -38,7 +40,8 @@ const LEAST_ERROR: f64 = 1e-10;
 /// Panels beside each other.
 const PANELS_PER_ROW: usize = 3;
 
-type Drawn = Result<(), Box<dyn std::error::Error>>;
+/// What a function that draws returns.
+pub type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// The plot of scaling as SVG: this library on two threads in full lines, compas-shapeop in dashed ones.
 pub fn scaling(measurements: &Measurements) -> Result<String> {
@@ -50,18 +53,21 @@ pub fn energies(energies: &Energies) -> Result<String> {
     svg(&|text| draw_energies(text, energies))
 }
 
-fn svg(draw: &dyn Fn(&mut String) -> Drawn) -> Result<String> {
+/// A drawing as SVG.
+pub fn svg(draw: &dyn Fn(&mut String) -> Drawn) -> Result<String> {
     let mut text = String::new();
     draw(&mut text).map_err(|error| anyhow!("the plot could not be drawn: {error}"))?;
     let drawn = format!("width=\"{}\" height=\"{}\"", SIZE.0 * FINENESS, SIZE.1 * FINENESS);
     Ok(text.replacen(&drawn, &format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1), 1))
 }
 
-fn fine(size: u32) -> u32 {
+/// A length in units of the drawing.
+pub fn fine(size: u32) -> u32 {
     size * FINENESS
 }
 
-fn font(size: u32) -> FontDesc<'static> {
+/// A font in units of the drawing.
+pub fn font(size: u32) -> FontDesc<'static> {
     ("sans-serif", fine(size)).into_font()
 }
 

@@ -148,16 +148,7 @@ fn paper(figures: &mut Figures, places: &Places, out: &Path) -> Result<()> {
         figures.group(&format!("{figure}, {}", entry["title"].as_str().unwrap_or_default()));
         figures.says(entry["claim"].as_str().unwrap_or_default());
         for measure in entry["measures"].as_array().context("no measures")? {
-            let name = format!("{} in {}", text(&measure["what"]), text(&measure["unit"]));
-            let name = name.trim_end_matches(" in ");
-            let value = number(&measure["value"])?;
-            match (measure["least"].as_f64(), measure["most"].as_f64()) {
-                (None, None) => figures.plain(name, &super::number(value)),
-                (least, most) => {
-                    least.into_iter().for_each(|least| figures.at_least(name, value, least));
-                    most.into_iter().for_each(|most| figures.at_most(name, value, most));
-                }
-            }
+            figures.measure(measure)?;
         }
     }
     figures.group("pictures of the paper's examples");
@@ -168,10 +159,6 @@ fn paper(figures: &mut Figures, places: &Places, out: &Path) -> Result<()> {
 
 fn library(places: &Places) -> Result<&str> {
     places.get("library").context("there is no library")
-}
-
-fn text(value: &Value) -> &str {
-    value.as_str().unwrap_or_default()
 }
 
 fn number(value: &Value) -> Result<f64> {

@@ -2,10 +2,12 @@
 
 mod bindings;
 mod engine;
+mod exploration;
 mod speed;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
+use serde_json::Value;
 
 /// What can be shown.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -16,6 +18,8 @@ pub enum Area {
     Speed,
     /// The Python package, Grasshopper components and files, all languages, the paper's examples.
     Bindings,
+    /// Hard constraints: projections, exact planarity, IPOPT, the paper's figures, a large drag, contradictions, weights.
+    Exploration,
 }
 
 /// Measures and prints; fails if a figure is short of its target.
@@ -24,6 +28,7 @@ pub fn run(area: Area, reuse: bool, repetitions: Option<usize>) -> Result<()> {
     match area {
         Area::Engine => engine::show(&mut figures)?,
         Area::Speed => speed::show(&mut figures, reuse, repetitions)?,
+        Area::Exploration => exploration::show(&mut figures)?,
         Area::Bindings => bindings::show(&mut figures)?,
     }
     println!();
@@ -72,6 +77,22 @@ impl Figures {
         self.line(name, &value.to_string(), &target.to_string(), value == target);
     }
 
+    /// A measure as programs tell it: `what`, its `unit` if it has one, its `value`, and its bounds `least` and `most`.
+    pub fn measure(&mut self, measure: &Value) -> Result<()> {
+        let text = |name: &str| measure[name].as_str().unwrap_or_default();
+        let name = format!("{} in {}", text("what"), text("unit"));
+        let name = name.trim_end_matches(" in ");
+        let value = measure["value"].as_f64().with_context(|| format!("expected a number as value of {name}"))?;
+        match (measure["least"].as_f64(), measure["most"].as_f64()) {
+            (None, None) => self.plain(name, &number(value)),
+            (least, most) => {
+                least.into_iter().for_each(|least| self.at_least(name, value, least));
+                most.into_iter().for_each(|most| self.at_most(name, value, most));
+            }
+        }
+        Ok(())
+    }
+
     /// A figure without a target.
     pub fn plain(&mut self, name: &str, value: &str) {
         println!("  {name:<58} {value:>12}");
@@ -87,10 +108,11 @@ impl Figures {
     }
 }
 
-/// A number in four digits, plainly or in powers of ten.
+/// A number in four digits, plainly or in powers of ten; a whole one as such.
 pub fn number(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
+        size if size < 1e5 && value.fract() == 0.0 => format!("{value}"),
         1e-3..1e5 => format!("{value:.4}"),
         _ => format!("{value:.1e}"),
     }

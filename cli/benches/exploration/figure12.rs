@@ -1,0 +1,68 @@
+//! Fig. 12 of Deng et al. 2015: the distance from the solution over time, as `benches/peers/ipopt.py` tells it of IPOPT.
+//!
+//! Seconds go from the mesh in memory: edges, constraints, the symbolic and numeric factorisation and all sweeps are in
+//! them; what this program does to keep the points is not. One thread. The finish is seen at its end only.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use glam::DVec3;
+use serde_json::{Value, json};
+use shapeop::mesh::patterns::translation_surface;
+use shapeop::problem::Objective;
+use shapeop::solver::SolveOptions;
+
+use crate::session::{Session, largest_diagonal_distance};
+
+/// The course of the solve of `n` × `n` points; `reference` holds the solution that distances are measured to.
+pub fn course(n: usize, reference: &Path) -> Result<Value> {
+    let solution = points_of(reference)?;
+    let mesh = translation_surface(n)?;
+    let started = Instant::now();
+    let mut session = Session::new(&mesh, &Objective::default())?;
+    session.solver.set_thread_count(1);
+    let bound = 0.01 * session.edge;
+    session.add("DiagonalDistance", &mesh.faces, &[bound], 1.0, true)?;
+    session.hold_boundary()?;
+    session.pull((n * n / 2) as u32, DVec3::Z)?;
+    session.solver.init()?;
+    let mut own = Duration::ZERO;
+    let mut seen: Vec<(u32, f64, Vec<DVec3>)> = Vec::new();
+    let report = session.solver.solve_until(&SolveOptions::default(), &mut |now| {
+        let entered = Instant::now();
+        let seconds = (entered - started - own).as_secs_f64();
+        seen.push((now.iteration, seconds, now.solver.points().to_vec()));
+        own += entered.elapsed();
+        ControlFlow::Continue(())
+    })?;
+    let seconds = (started.elapsed() - own).as_secs_f64();
+    let found = session.solver.found().context("there is nothing to explore")?;
+    let steps = found.newton_steps;
+    seen.push((report.iterations + steps, seconds, session.solver.points().to_vec()));
+
+    let distance =
+        |points: &[DVec3]| points.iter().zip(&solution).map(|(a, b)| a.distance_squared(*b)).sum::<f64>().sqrt();
+    let at_start = distance(&mesh.points);
+    let iteration = |(iteration, seconds, points): &(u32, f64, Vec<DVec3>)| json!({"iteration": iteration, "seconds": seconds, "delta": distance(points) / at_start});
+    let excess = largest_diagonal_distance(&session.mesh()) - bound;
+    Ok(json!({
+        "n": n,
+        "outcome": report.outcome.text(),
+        "sweeps": report.iterations,
+        "newton_steps": steps,
+        "objective": session.terms().sum(),
+        "violation": excess.max(0.0) / session.edge,
+        "delta": distance(session.solver.points()) / at_start,
+        "iterations": seen.iter().map(iteration).collect::<Vec<_>>(),
+    }))
+}
+
+/// The points of a file that `ipopt.py --polished` wrote.
+fn points_of(reference: &Path) -> Result<Vec<DVec3>> {
+    let text = std::fs::read_to_string(reference).with_context(|| format!("{} cannot be read", reference.display()))?;
+    let kept: Value = serde_json::from_str(&text)?;
+    let points: Vec<[f64; 3]> = serde_json::from_value(kept["points"].clone())?;
+    Ok(points.into_iter().map(DVec3::from_array).collect())
+}
