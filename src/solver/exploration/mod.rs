@@ -7,7 +7,8 @@
 //!
 //! Sweeps of a splitting method ([`splitting`]) find the neighbourhood of a solution in a few milliseconds; Newton
 //! steps ([`finish`]) then find it to the last digits. Both know a constraint by its projection alone. Multipliers have
-//! a cap, so that constraints which contradict each other are seen by theirs ([`conflicts`]); points, rows and
+//! a cap, so that constraints which contradict each other do no harm until they are found ([`conflicts`], [`search`]);
+//! points, rows and
 //! multipliers are kept from one call to the next, whatever was changed in between. Source: Deng et al. 2015,
 //! "Interactive design exploration for constrained meshes".
 
@@ -17,6 +18,7 @@ mod engine;
 mod finish;
 mod local;
 mod quadratic;
+mod search;
 mod sensitivity;
 mod splitting;
 
@@ -25,7 +27,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use self::engine::{Engine, Memory, distances, extent};
+use self::conflicts::Priorities;
+use self::engine::{Course, Engine, Memory, distances, extent};
 use self::finish::Kept;
 use self::quadratic::Quadratic;
 use self::splitting::Splitting;
@@ -60,6 +63,8 @@ pub(super) struct Explorer {
 pub struct Found {
     /// Sweeps of the splitting method.
     pub sweeps: u32,
+    /// Those among them that searched for contradictions.
+    pub search_sweeps: u32,
     /// Newton steps.
     pub newton_steps: u32,
     /// Distance from the hard constraints and gradient of the Lagrangian, computed afresh at the end.
@@ -281,13 +286,15 @@ impl Explorer {
         if self.has_new_scalars {
             engine.splitting.soft.take_scalars(&solver.constraints.part(false));
             engine.splitting.hard.take_scalars(&solver.constraints.part(true));
-            engine.splitting.forget();
         }
-        engine.take_forces(solver, &solver.points);
-        if self.has_new_targets {
-            engine.splitting.forget();
+        let have_moved = engine.splitting.points != solver.points;
+        // Forces on faces are other ones at every sweep.
+        let have_other_forces =
+            engine.take_forces(solver, &solver.points) > 0.0 && !solver.forces.has_forces_on_faces();
+        if self.has_new_scalars || self.has_new_targets || have_moved || have_other_forces {
+            engine.start_over(&solver.constraints)?;
         }
-        if engine.splitting.points != solver.points {
+        if have_moved {
             engine.splitting.points.copy_from_slice(&solver.points);
             let (multipliers, penalty) = (engine.splitting.multipliers(), engine.splitting.penalty);
             engine.splitting.resume(&multipliers, penalty);
@@ -310,7 +317,8 @@ impl Explorer {
             extents.filter(|extent| *extent > 0.0).fold((0.0, 0), |(sum, count), e| (sum + e, count + 1));
         let extent = if count > 0 { sum / f64::from(count) } else { size };
         let force = stiffness * size;
-        splitting.caps = conflicts::caps(&splitting, &solver.constraints, stiffness * extent);
+        let priorities = Priorities::new(&splitting, &solver.constraints, stiffness * extent);
+        splitting.caps = priorities.caps(0);
         self.memory.give(&mut splitting);
         Ok(Engine {
             splitting,
@@ -320,7 +328,9 @@ impl Explorer {
             extent,
             tolerance: objective.tolerance,
             changes: 0,
+            priorities,
             raises: 0,
+            course: Course::default(),
             pool: None,
             judge_seconds: 0.0,
         })
