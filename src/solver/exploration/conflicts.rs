@@ -109,13 +109,14 @@ impl Watch {
 /// How a contradiction comes to be suspected.
 pub(super) struct Suspicion {
     watch: Watch,
-    is_stiffer: bool,
+    /// The penalty before it was raised here.
+    pub(super) penalty: Option<f64>,
     looks: u32,
 }
 
 impl Default for Suspicion {
     fn default() -> Self {
-        Self { watch: Watch::default(), is_stiffer: false, looks: LOOKS }
+        Self { watch: Watch::default(), penalty: None, looks: LOOKS }
     }
 }
 
@@ -148,15 +149,16 @@ impl Engine {
         if suspicion.watch.vain >= suspicion.looks {
             return Ok(true);
         }
-        if (capped > 0 || suspicion.is_stiffer) && self.raises < RAISES {
+        let is_stiffer = suspicion.penalty.is_some();
+        if (capped > 0 || is_stiffer) && self.raises < RAISES {
             self.raises += 1;
             self.splitting.caps = self.priorities.caps(self.raises);
-        } else if suspicion.is_stiffer {
+        } else if is_stiffer {
             return Ok(false);
         }
-        suspicion.is_stiffer = true;
-        let penalty = STIFFER * self.splitting.penalty;
-        self.splitting.set_penalty(penalty, constraints, false)?;
+        let penalty = self.splitting.penalty;
+        suspicion.penalty.get_or_insert(penalty);
+        self.splitting.set_penalty(STIFFER * penalty, constraints, false)?;
         Ok(false)
     }
 }

@@ -210,7 +210,7 @@ impl Engine {
             }
             if self.course.search.is_some() {
                 found.search_sweeps += 1;
-                self.search(&solver.constraints)?;
+                self.search(sweep.capped, &solver.constraints)?;
                 solver.points.copy_from_slice(&self.splitting.points);
             } else {
                 self.course.see(&sweep);
@@ -282,13 +282,18 @@ impl Engine {
     }
 
     /// Goes on with the search, and takes up what it ends with.
-    fn search(&mut self, constraints: &ConstraintSet) -> Result<()> {
+    fn search(&mut self, capped: usize, constraints: &ConstraintSet) -> Result<()> {
         let Some(mut search) = self.course.search.take() else { return Ok(()) };
-        let Some(items) = search.after_sweep(self) else {
+        let Some(items) = search.after_sweep(capped, self) else {
             self.course.search = Some(search);
             return Ok(());
         };
-        self.splitting.set_penalty(search.penalty, constraints, false)?;
+        let mut penalty = search.penalty;
+        if !items.is_empty() {
+            // It was for the contradiction that these were raised.
+            (self.raises, penalty) = (0, self.course.suspicion.penalty.unwrap_or(penalty));
+        }
+        self.splitting.set_penalty(penalty, constraints, false)?;
         self.splitting.caps = self.priorities.caps(self.raises);
         items.iter().for_each(|&i| self.splitting.caps[i] = 0.0);
         self.splitting.restart();

@@ -26,10 +26,13 @@ use super::engine::Engine;
 use crate::constraints::ConstraintSet;
 use crate::error::Result;
 
-/// Sweeps between looks, looks in vain after which a trial has failed, and looks at most.
-const LOOK: u32 = 20;
+/// Sweeps between looks, and looks at most in a trial.
+const LOOK: u32 = 10;
+const MOST_LOOKS: u32 = 40;
+
+/// Looks in vain after which a trial has failed: with a multiplier at its cap, and with none.
 const VAIN: u32 = 2;
-const MOST_LOOKS: u32 = 20;
+const VAIN_BELOW: u32 = 5;
 
 /// The caps of the search over the first ones, and how far, over the mean extent, a multiplier of the lowest priority
 /// at its cap moves what resists by the penalty alone: the farther, the longer multipliers take to get there.
@@ -107,8 +110,8 @@ impl Search {
         Ok(search)
     }
 
-    /// To be called after every sweep; the verdict once there is one. The points then meet all that is not given up.
-    pub(super) fn after_sweep(&mut self, engine: &mut Engine) -> Option<Verdict> {
+    /// To be called after every sweep with the number of multipliers at their caps; the verdict once there is one. The points then meet all that is not given up.
+    pub(super) fn after_sweep(&mut self, capped: usize, engine: &mut Engine) -> Option<Verdict> {
         if !self.watch.is_due(LOOK) {
             return None;
         }
@@ -117,7 +120,8 @@ impl Search {
         let bound = VIOLATED * engine.extent;
         let missed: Vec<usize> = (0..found.len()).filter(|i| found[*i] > bound && !self.given_up.contains(i)).collect();
         self.watch.see(missed.iter().map(|&i| found[i]).fold(0.0, f64::max));
-        let is_stuck = self.watch.vain >= VAIN || self.looks >= MOST_LOOKS;
+        let enough = if capped > self.given_up.len() { VAIN } else { VAIN_BELOW };
+        let is_stuck = self.watch.vain >= enough || self.looks >= MOST_LOOKS;
         match self.stage {
             Stage::Elastic => self.elastic(missed, &found, engine),
             _ if !missed.is_empty() && !is_stuck => None,
