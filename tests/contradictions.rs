@@ -8,7 +8,7 @@ use glam::{DQuat, DVec3};
 use shapeop::constraints::ConstraintId;
 use shapeop::mesh::patterns::{height_field, translation_surface, tri_hex};
 use shapeop::mesh::{Mesh, Topology, file};
-use shapeop::problem::{FairnessRows, Objective};
+use shapeop::problem::{FairnessRows, Force, Objective};
 use shapeop::solver::{Outcome, SolveOptions, Solver};
 
 /// Sweeps before the search for a contradiction, at most.
@@ -67,6 +67,13 @@ impl Case {
         self.hard("EdgeLength", &edge, priority, &[length, length])
     }
 
+    /// Edges of length 1.
+    fn sides(&mut self, edges: &[[u32; 2]], priority: f64) {
+        for edge in edges {
+            self.length(*edge, 1.0, priority);
+        }
+    }
+
     /// All edges within `play` of their lengths.
     fn lengths(&mut self, edges: &[[u32; 2]], play: f64, priority: f64) {
         for [a, b] in edges {
@@ -76,7 +83,9 @@ impl Case {
     }
 
     fn on_faces(&mut self, mesh: &Mesh, type_name: &str, scalars: &[f64]) {
-        mesh.faces.iter().for_each(|face| drop(self.hard(type_name, face, 1.0, scalars)));
+        for face in &mesh.faces {
+            self.hard(type_name, face, 1.0, scalars);
+        }
     }
 
     /// Edges that are to be half as long again, at a lower priority than the others.
@@ -201,8 +210,7 @@ fn infeasible() -> Vec<Case> {
     cases.push(dragged);
     // Shorter sides that weigh more: the long one is longer than both together.
     let mut triangle = case("triangle of 1, 1 and 3", &polygon(3), &ring(3));
-    triangle.length([0, 1], 1.0, 2.0);
-    triangle.length([1, 2], 1.0, 2.0);
+    triangle.sides(&ring(3)[..2], 2.0);
     triangle.plant("EdgeLength", &[2, 0], 1.0, &[3.0, 3.0]);
     cases.push(triangle);
     // A square of side 1 in a level plane is not in an upright one.
@@ -210,7 +218,7 @@ fn infeasible() -> Vec<Case> {
     let mut upright = case("regular, level and upright", &square, &ring(4));
     upright.hard("RegularPolygon", &[0, 1, 2, 3], 2.0, &[]);
     upright.hard("Orientation", &[0, 1, 2, 3], 2.0, &[0.0, 0.0, 1.0]);
-    ring(4).into_iter().for_each(|edge| drop(upright.length(edge, 1.0, 2.0)));
+    upright.sides(&ring(4), 2.0);
     upright.plant("Orientation", &[0, 1, 2, 3], 1.0, &[1.0, 0.0, 0.0]);
     cases.push(upright);
     // A line one above the plane, and parallel to it.
@@ -227,25 +235,24 @@ fn infeasible() -> Vec<Case> {
     cases.push(equal);
     // Three sides of 1: every angle is 60°.
     let mut angle = case("angle of a triangle of lengths", &polygon(3), &ring(3));
-    ring(3).into_iter().for_each(|edge| drop(angle.length(edge, 1.0, 2.0)));
+    angle.sides(&ring(3), 2.0);
     angle.plant("BoundedAngle", &[0, 1, 2], 1.0, &[FRAC_PI_2, 0.75 * PI]);
     cases.push(angle);
     // Seven sides of 1 do not reach round one of 9.
     let mut closed = case("a ring that cannot close", &polygon(8), &ring(8));
-    ring(7).into_iter().take(6).for_each(|edge| drop(closed.length(edge, 1.0, 2.0)));
-    closed.length([6, 7], 1.0, 2.0);
+    closed.sides(&ring(8)[..7], 2.0);
     closed.plant("EdgeLength", &[7, 0], 1.0, &[9.0, 9.0]);
     cases.push(closed);
     // The one that was there first gives way to a heavier one.
     let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]].map(DVec3::from);
     let mut heavier = case("a heavier edge wins", &square, &ring(4));
     heavier.plant("EdgeLength", &[0, 1], 1.0, &[1.0, 1.0]);
-    ring(4).into_iter().skip(1).for_each(|edge| drop(heavier.length(edge, 1.0, 1.0)));
+    heavier.sides(&ring(4)[1..], 1.0);
     heavier.length([0, 1], 1.5, 3.0);
     cases.push(heavier);
     // A single heavy edge given up would do: the other three reach just as far as the planted one is long.
     let mut lighter = case("a lighter edge loses", &square, &ring(4));
-    ring(4).into_iter().for_each(|edge| drop(lighter.length(edge, 1.0, 2.0)));
+    lighter.sides(&ring(4), 2.0);
     lighter.plant("EdgeLength", &[0, 1], 1.0, &[3.0, 3.0]);
     cases.push(lighter);
     cases.iter_mut().for_each(|case| case.solver.init().unwrap());
@@ -343,22 +350,27 @@ fn whole() -> SolveOptions {
 #[test]
 fn planted_contradictions_are_named_exactly() {
     let mut wrong = Vec::new();
-    for mut case in infeasible() {
+    for (mut case, mut twin) in infeasible().into_iter().zip(infeasible()) {
         let solved = case.solve(&whole());
+        // The same in calls of one sweep, which end when it is named: the twin goes the same way.
+        let named_after = twin.solve(&SolveOptions { max_iterations: 1, ..whole() });
+        let recognised = named_after.sweeps - named_after.search_sweeps;
         let named = case.planted.iter().filter(|id| solved.conflicts.contains(id)).count();
         let is_exact = solved.outcome == Outcome::Infeasible && solved.conflicts == case.planted;
-        let before = solved.sweeps - solved.search_sweeps;
         println!(
-            "infeasible {}: named {named} of {}{}, {} sweeps, largest coordinate {:.2} sizes ({before} of the sweeps \
-             before and after the search), others met to {:.1e}",
+            "infeasible {}: named {named} of {}{}, {recognised} sweeps, largest coordinate {:.2} sizes; named after {} \
+             with the search, others met to {:.0e} after {}",
             case.name,
             case.planted.len(),
             if is_exact { " exactly" } else { "" },
-            solved.sweeps,
             solved.farthest,
+            named_after.sweeps,
             case.violation(),
+            solved.sweeps,
         );
-        if !(is_exact && before <= RECOGNISED && solved.farthest <= BOUND && case.violation() <= 1e-9) {
+        let is_bounded = solved.farthest <= BOUND && named_after.farthest <= BOUND;
+        let is_same = named_after.conflicts == solved.conflicts && named_after.sweeps <= solved.sweeps;
+        if !(is_exact && is_same && recognised <= RECOGNISED && is_bounded && case.violation() <= 1e-9) {
             wrong.push(format!("{}: {:?} {:?} not {:?}", case.name, solved.outcome, solved.conflicts, case.planted));
         }
     }
@@ -394,5 +406,91 @@ fn calls_of_seven_sweeps_name_the_same() {
         println!("{} in {} calls of 7 sweeps: {}", case.name, solved.calls, solved.outcome.text());
         let expected = if case.planted.is_empty() { Outcome::Converged } else { Outcome::Infeasible };
         assert_eq!((solved.outcome, &solved.conflicts), (expected, &case.planted), "{}", case.name);
+    }
+}
+
+#[test]
+fn a_few_milliseconds_at_a_time_name_the_same() {
+    for mut case in infeasible() {
+        let solved = case.solve(&SolveOptions { time_budget_seconds: 2e-4, ..whole() });
+        println!(
+            "{} in {} calls of 0.2 ms: {} after {} sweeps",
+            case.name,
+            solved.calls,
+            solved.outcome.text(),
+            solved.sweeps
+        );
+        assert_eq!((solved.outcome, &solved.conflicts), (Outcome::Infeasible, &case.planted), "{}", case.name);
+    }
+}
+
+#[test]
+fn plain_iterations_find_it_too() {
+    let mut case = grid_with_longer_edges("plain", 5, &[17]);
+    case.solver.init().unwrap();
+    (0..60).for_each(|_| case.solver.solve(10).unwrap());
+    assert_eq!(case.solver.found().unwrap().conflicts, case.planted);
+}
+
+#[test]
+fn an_unchanged_contradiction_is_told_again_at_once_and_a_change_ends_it() {
+    let mut case = grid_with_longer_edges("again", 5, &[17]);
+    case.solver.init().unwrap();
+    let first = case.solve(&whole());
+    assert_eq!((first.outcome, &first.conflicts), (Outcome::Infeasible, &case.planted));
+    let (points, found) = (case.solver.points().to_vec(), case.solver.found().unwrap().clone());
+    let again = case.solve(&whole());
+    assert_eq!((again.outcome, &again.conflicts, again.sweeps), (Outcome::Infeasible, &case.planted, 0));
+    assert!(case.solver.points() == points);
+    let told = case.solver.found().unwrap();
+    assert_eq!((told.largest_violation, told.worst, told.capped), (found.largest_violation, found.worst, found.capped));
+    let planted = case.planted[0];
+    // What was asked for again is no change.
+    case.solver.set_handle(12, case.at(12)).unwrap();
+    assert_eq!(case.solve(&whole()).outcome, Outcome::Infeasible);
+    let target = case.at(12);
+    case.solver.set_handle(12, target).unwrap();
+    assert_eq!(case.solve(&whole()).sweeps, 0);
+    // A target, points, or a force that is another: the same is found anew.
+    case.solver.set_handle(12, target + 0.1 * DVec3::Z).unwrap();
+    let moved = case.solve(&whole());
+    assert!(moved.sweeps > 0 && moved.outcome == Outcome::Infeasible && moved.conflicts == case.planted);
+    case.solver.set_points(&points).unwrap();
+    let put_back = case.solve(&whole());
+    assert!(put_back.sweeps > 0 && put_back.outcome == Outcome::Infeasible && put_back.conflicts == case.planted);
+    case.solver.add_force(Force::Vertex { force: 0.01 * DVec3::Z, point: 3 }).unwrap();
+    let drawn = case.solve(&whole());
+    assert!(drawn.sweeps > 0 && drawn.outcome == Outcome::Infeasible && drawn.conflicts == case.planted);
+    // Another length, no longer hard, or gone: there is no contradiction any more.
+    case.solver.edit_constraint("EdgeLength", planted, &[0.5, 2.0]).unwrap();
+    let wide = case.solve(&whole());
+    assert!(wide.outcome == Outcome::Converged && wide.conflicts.is_empty(), "{:?}", wide.outcome);
+    case.solver.edit_constraint("EdgeLength", planted, &[1.5, 1.6]).unwrap();
+    assert_eq!(case.solve(&whole()).conflicts, [planted]);
+    case.solver.set_hard(&[planted], false).unwrap();
+    let soft = case.solve(&whole());
+    assert!(soft.outcome == Outcome::Converged && soft.conflicts.is_empty() && soft.farthest < BOUND);
+    case.solver.set_hard(&[planted], true).unwrap();
+    assert_eq!(case.solve(&whole()).conflicts, [planted]);
+    case.solver.remove_constraint(planted).unwrap();
+    assert_eq!(case.solve(&whole()).outcome, Outcome::Converged);
+}
+
+#[test]
+fn the_lightest_set_is_named_whatever_the_priorities() {
+    // Two lengths of an edge: the one of lower priority, from nearly equal priorities to very different ones.
+    for ratio in [1.01, 2.0, 30.0, 1e4] {
+        for lighter in [0, 1] {
+            let mut case = case("ratio", &[DVec3::ZERO, DVec3::X], &[[0, 1]]);
+            for (k, length) in [1.0, 3.0].into_iter().enumerate() {
+                let id = case.length([0, 1], length, if k == lighter { 1.0 } else { ratio });
+                if k == lighter {
+                    case.planted.push(id);
+                }
+            }
+            case.solver.init().unwrap();
+            let solved = case.solve(&whole());
+            assert_eq!((solved.outcome, &solved.conflicts), (Outcome::Infeasible, &case.planted), "{ratio}, {lighter}");
+        }
     }
 }

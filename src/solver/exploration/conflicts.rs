@@ -162,3 +162,49 @@ impl Engine {
         Ok(false)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Topology;
+    use crate::mesh::patterns::height_field;
+    use crate::problem::FairnessRows;
+    use crate::problem::Objective;
+    use crate::solver::Solver;
+
+    /// A grid whose edges keep their lengths within 3 %, one of which is to be half as long again.
+    fn contradiction() -> Solver {
+        let mesh = height_field(5, 5, [0.0, 4.0], [0.0, 4.0], |x, y| 0.1 * (x + 0.5 * y).sin()).unwrap();
+        let edges = Topology::new(&mesh).unwrap().edges().to_vec();
+        let mut solver = Solver::new();
+        solver.set_points(&mesh.points).unwrap();
+        let rows = FairnessRows::laplacian(mesh.points.len(), &edges);
+        solver.set_objective(&Objective::default(), rows).unwrap();
+        for (k, [a, b]) in edges.iter().chain([&edges[17]]).enumerate() {
+            let length = mesh.points[*a as usize].distance(mesh.points[*b as usize]);
+            let factors = if k < edges.len() { [0.97, 1.03] } else { [1.5, 1.6] };
+            let id = solver.add_constraint("EdgeLength", &[*a, *b], if k < edges.len() { 2.0 } else { 1.0 }).unwrap();
+            solver.edit_constraint("EdgeLength", id, &factors.map(|factor| factor * length)).unwrap();
+            solver.set_hard(&[id], true).unwrap();
+        }
+        solver.init().unwrap();
+        solver
+    }
+
+    #[test]
+    fn multipliers_stay_within_their_caps_and_points_near_the_model() {
+        let mut solver = contradiction();
+        for sweep in 0..800 {
+            solver.solve(1).unwrap();
+            let splitting = &solver.explorer.engine.as_ref().unwrap().splitting;
+            let all = splitting.multipliers();
+            for (item, cap) in splitting.hard.items.iter().zip(&splitting.caps) {
+                let squares: f64 = all[item.rows()].iter().map(|u| u.length_squared()).sum();
+                let multiplier = splitting.penalty * item.scale * squares.sqrt();
+                assert!(multiplier <= cap * (1.0 + 1e-12), "sweep {sweep}: {multiplier:e} above {cap:e}");
+            }
+            assert!(solver.points.iter().all(|point| point.length() < 12.0), "sweep {sweep}");
+        }
+        assert_eq!(solver.found().unwrap().conflicts, [40]);
+    }
+}

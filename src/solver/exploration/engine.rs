@@ -37,6 +37,9 @@ const REST: u32 = 10;
 /// Sweeps at most in which the others are to be met to the last digits once a contradiction has been named.
 const SETTLING: u32 = 300;
 
+/// Sweeps between finishes at most then: nothing else is left to do.
+const AGAIN: u32 = 40;
+
 /// What outlives a change of the constraints.
 #[derive(Default)]
 pub(super) struct Memory {
@@ -154,9 +157,8 @@ impl Memory {
         let mut all = vec![DVec3::ZERO; splitting.rows.len()];
         for (item, cap) in splitting.hard.items.iter().zip(&splitting.caps) {
             if let Some(known) = self.multipliers.get(&item.id).filter(|known| known.len() == item.row_count) {
-                let length = item.scale * known.iter().map(|row| row.length_squared()).sum::<f64>().sqrt();
-                let part = if length > *cap { cap / length } else { 1.0 };
-                all[item.rows()].iter_mut().zip(known).for_each(|(row, known)| *row = part * *known);
+                all[item.rows()].copy_from_slice(known);
+                item.cut(&mut all[item.rows()], *cap);
             }
         }
         splitting.resume(&all, 1.0);
@@ -317,9 +319,7 @@ impl Engine {
     fn is_time_to_finish(&self, sweep: &Sweep) -> bool {
         let course = &self.course;
         let is_near = sweep.primal <= NEAR * self.extent || course.idle > 3 * BALANCE;
-        is_near
-            && course.sweeps >= course.next_finish
-            && (course.settled >= SETTLED || course.sweeps >= 4 * SETTLED)
+        is_near && course.sweeps >= course.next_finish && (course.settled >= SETTLED || course.sweeps >= 4 * SETTLED)
     }
 
     /// True if the points are a solution of all that is not given up; `found` has the residuals then.
@@ -372,7 +372,8 @@ impl Engine {
     /// Newton steps from the points in hand; what is nearer is kept.
     fn finish(&mut self, found: &mut Found, options: &SolveOptions, started: Instant) -> Result<()> {
         let sweeps = self.course.sweeps;
-        self.course.next_finish = sweeps + sweeps.max(2 * SETTLED);
+        let most = if self.course.named.is_some() { AGAIN } else { u32::MAX };
+        self.course.next_finish = sweeps + sweeps.clamp(2 * SETTLED, most);
         let splitting = &self.splitting;
         let blocks =
             |local: &Local| local.items.iter().map(|item| 9 * item.point_count * item.point_count).sum::<usize>();
@@ -396,8 +397,7 @@ impl Engine {
         found.newton_steps += steps;
         found.factorisations += factorisations;
         let merit = |residuals: &Residuals| (residuals.primal / self.size).max(residuals.dual);
-        let is_solution =
-            residuals.are_within(self.tolerance, self.size) && capped == self.course.given_up();
+        let is_solution = residuals.are_within(self.tolerance, self.size) && capped == self.course.given_up();
         if is_solution || merit(&residuals) < merit(&before) {
             self.splitting.points = points;
             self.splitting.resume(&u, penalty);

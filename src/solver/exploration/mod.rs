@@ -117,7 +117,7 @@ impl Solver {
             return Err(Error::new(Status::InvalidValue, reason));
         }
         for (i, &id) in ids.iter().enumerate() {
-            self.constraints.check_hard(id, is_hard).map_err(|error| error.at(format!("ids[{i}]")))?;
+            self.constraints.check_hard(id, is_hard).map_err(|error| error.with_place(format!("ids[{i}]")))?;
         }
         for &id in ids {
             if self.constraints.set_hard(id, is_hard)? {

@@ -295,9 +295,13 @@ impl Splitting {
         sweep
     }
 
-    /// `λ/μ` of all hard constraints, in rows.
+    /// `λ/μ` of all hard constraints, in rows, none beyond its cap.
     pub(super) fn multipliers(&self) -> Vec<DVec3> {
-        self.images.iter().zip(&self.rows).map(|(image, row)| *image - *row).collect()
+        let mut all: Vec<DVec3> = self.images.iter().zip(&self.rows).map(|(image, row)| *image - *row).collect();
+        for (item, cap) in self.hard.items.iter().zip(&self.caps) {
+            item.cut(&mut all[item.rows()], cap / self.penalty);
+        }
+        all
     }
 }
 
