@@ -385,7 +385,7 @@ fn where_all_can_be_met_no_contradiction_is_reported() {
         let violation = case.violation();
         let is_right = solved.outcome == Outcome::Converged && solved.conflicts.is_empty();
         println!(
-            "feasible {}: {}, largest violation {violation:.1e}, {} sweeps, {} of them in the search, {}",
+            "feasible {}: {}, largest violation {violation:.1e}; {} sweeps, {} of them in the search, {}",
             case.name,
             if solved.conflicts.is_empty() { "no conflict" } else { "CONFLICT" },
             solved.sweeps,
@@ -445,10 +445,10 @@ fn an_unchanged_contradiction_is_told_again_at_once_and_a_change_ends_it() {
     let told = case.solver.found().unwrap();
     assert_eq!((told.largest_violation, told.worst, told.capped), (found.largest_violation, found.worst, found.capped));
     let planted = case.planted[0];
-    // What was asked for again is no change.
-    case.solver.set_handle(12, case.at(12)).unwrap();
-    assert_eq!(case.solve(&whole()).outcome, Outcome::Infeasible);
     let target = case.at(12);
+    case.solver.set_handle(12, target).unwrap();
+    assert_eq!(case.solve(&whole()).outcome, Outcome::Infeasible);
+    // What was asked for again is no change.
     case.solver.set_handle(12, target).unwrap();
     assert_eq!(case.solve(&whole()).sweeps, 0);
     // A target, points, or a force that is another: the same is found anew.

@@ -6,8 +6,9 @@
 //! they were raised.
 //!
 //! Sweeps of a contradiction go on for ever: multipliers grow to their caps, or sets that are not convex throw the rows
-//! to and fro. What tells them is that the largest violation of the points does not fall. The caps are raised then, in
-//! case they were too low, and after some raises in vain the search ([`super::search`]) decides.
+//! to and fro. What tells them is that the largest violation of the points does not fall. Where multipliers are at their
+//! caps, these are raised then, in case they were too low; after some looks in vain the search ([`super::search`])
+//! decides.
 
 use glam::DVec3;
 
@@ -38,7 +39,8 @@ pub(super) const PATIENCE: u32 = 25;
 /// A look is in vain if the largest violation is above this part of what it was when it last fell.
 const FALLEN: f64 = 0.9;
 
-/// Looks in vain, one behind the other, after which the search begins.
+/// Looks in vain, one behind the other, after which the search begins; where caps cannot be raised any more, the first
+/// search begins at once.
 const LOOKS: u32 = 4;
 
 /// A constraint counts as violated from this part of the mean extent on.
@@ -143,22 +145,18 @@ impl Engine {
             return Ok(false);
         }
         suspicion.watch.see(largest);
-        if suspicion.watch.vain == 0 {
-            return Ok(false);
-        }
-        if suspicion.watch.vain >= suspicion.looks {
+        let vain = suspicion.watch.vain;
+        let was_raised_in_vain = self.raises >= RAISES && suspicion.looks == LOOKS;
+        if vain >= suspicion.looks || was_raised_in_vain && vain > 0 {
             return Ok(true);
         }
-        let is_stiffer = suspicion.penalty.is_some();
-        if (capped > 0 || is_stiffer) && self.raises < RAISES {
+        if vain > 0 && capped > 0 && self.raises < RAISES {
             self.raises += 1;
             self.splitting.caps = self.priorities.caps(self.raises);
-        } else if is_stiffer {
-            return Ok(false);
+            let penalty = self.splitting.penalty;
+            suspicion.penalty.get_or_insert(penalty);
+            self.splitting.set_penalty(STIFFER * penalty, constraints, false)?;
         }
-        let penalty = self.splitting.penalty;
-        suspicion.penalty.get_or_insert(penalty);
-        self.splitting.set_penalty(STIFFER * penalty, constraints, false)?;
         Ok(false)
     }
 }
