@@ -477,6 +477,21 @@ fn an_unchanged_contradiction_is_told_again_at_once_and_a_change_ends_it() {
 }
 
 #[test]
+fn heavy_ones_that_contradict_each_other_throw_no_point_far_away() {
+    let mesh = grid(5);
+    let all = edges(&mesh);
+    let mut case = case_of("heavy", &mesh);
+    case.lengths(&all[..20], 0.03, 1e-3);
+    case.lengths(&all[20..], 0.03, 1e3);
+    case.longer(&[all[25]], 500.0);
+    case.solver.init().unwrap();
+    let solved = case.solve(&whole());
+    println!("heavy: {} sweeps, largest coordinate {} sizes", solved.sweeps, solved.farthest);
+    assert_eq!((solved.outcome, &solved.conflicts), (Outcome::Infeasible, &case.planted));
+    assert!(solved.farthest < BOUND, "{}", solved.farthest);
+}
+
+#[test]
 fn the_lightest_set_is_named_whatever_the_priorities() {
     // Two lengths of an edge: the one of lower priority, from nearly equal priorities to very different ones.
     for ratio in [1.01, 2.0, 30.0, 1e4] {

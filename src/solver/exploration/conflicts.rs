@@ -23,15 +23,16 @@ use crate::error::Result;
 const CAP: f64 = 10.0;
 
 /// By how much caps are raised, and how often.
-const RAISE: f64 = 10.0;
-const RAISES: u32 = 3;
+const RAISE: f64 = 5.0;
+const RAISES: u32 = 2;
 
-/// The penalty's growth with each raise: multipliers have further to go.
-const STIFFER: f64 = 2.0;
+/// The penalty's growth with each raise. A set that is not convex can throw a constraint's points as far as cap over
+/// penalty: that must not grow out of the model.
+const STIFFER: f64 = 3.0;
 
-/// Priorities over the lowest one are taken from this range: sweeps cannot tell forces apart that differ by more. The
-/// search compares the priorities themselves.
-const PRIORITIES: [f64; 2] = [0.1, 100.0];
+/// Priorities over the lowest one are taken from this range, for the same reason. The search compares the priorities
+/// themselves.
+const PRIORITIES: [f64; 2] = [0.25, 4.0];
 
 /// Sweeps between looks at the largest violation.
 pub(super) const PATIENCE: u32 = 25;
