@@ -112,14 +112,12 @@ impl Watch {
 /// How a contradiction comes to be suspected.
 pub(super) struct Suspicion {
     watch: Watch,
-    /// The penalty before it was raised here.
-    pub(super) penalty: Option<f64>,
     looks: u32,
 }
 
 impl Default for Suspicion {
     fn default() -> Self {
-        Self { watch: Watch::default(), penalty: None, looks: LOOKS }
+        Self { watch: Watch::default(), looks: LOOKS }
     }
 }
 
@@ -154,9 +152,7 @@ impl Engine {
         if vain > 0 && capped > 0 && self.raises < RAISES {
             self.raises += 1;
             self.splitting.caps = self.priorities.caps(self.raises);
-            let penalty = self.splitting.penalty;
-            suspicion.penalty.get_or_insert(penalty);
-            self.splitting.set_penalty(STIFFER * penalty, constraints, false)?;
+            self.splitting.set_penalty(STIFFER * self.splitting.penalty, constraints, false)?;
         }
         Ok(false)
     }

@@ -58,6 +58,8 @@ pub(super) struct Engine {
     /// The mean extent of hard constraints.
     pub(super) extent: f64,
     pub(super) tolerance: f64,
+    /// The penalty of the first sweep, and how often it was balanced.
+    pub(super) first_penalty: f64,
     pub(super) changes: u32,
     pub(super) priorities: Priorities,
     /// How often caps were raised.
@@ -142,7 +144,9 @@ impl Memory {
     /// Takes what `engine` knows.
     pub(super) fn take(&mut self, engine: &Engine) {
         let splitting = &engine.splitting;
-        self.penalty = Some(engine.course.search.as_ref().map_or(splitting.penalty, |search| search.penalty));
+        // A penalty that was raised for a contradiction is none for what comes after.
+        let is_raised = engine.raises > 0 || engine.course.search.is_some();
+        self.penalty = Some(if is_raised { engine.first_penalty } else { splitting.penalty });
         self.multipliers.clear();
         let all = splitting.multipliers();
         for item in &splitting.hard.items {
@@ -292,8 +296,8 @@ impl Engine {
         };
         let mut penalty = search.penalty;
         if !items.is_empty() {
-            // It was for the contradiction that these were raised.
-            (self.raises, penalty) = (0, self.course.suspicion.penalty.unwrap_or(penalty));
+            // It was the contradiction that these were raised for.
+            (self.raises, self.changes, penalty) = (0, 0, self.first_penalty);
         }
         self.splitting.set_penalty(penalty, constraints, false)?;
         self.splitting.caps = self.priorities.caps(self.raises);
@@ -398,7 +402,8 @@ impl Engine {
         found.factorisations += factorisations;
         let merit = |residuals: &Residuals| (residuals.primal / self.size).max(residuals.dual);
         let is_solution = residuals.are_within(self.tolerance, self.size) && capped == self.course.given_up();
-        if is_solution || merit(&residuals) < merit(&before) {
+        // With other constraints at their caps than those that are given up, residuals say little.
+        if is_solution || capped == self.course.given_up() && merit(&residuals) < merit(&before) {
             self.splitting.points = points;
             self.splitting.resume(&u, penalty);
         }

@@ -321,6 +321,7 @@ impl Explorer {
         splitting.caps = priorities.caps(0);
         self.memory.give(&mut splitting);
         Ok(Engine {
+            first_penalty: splitting.penalty,
             splitting,
             kept: Kept::default(),
             size,
