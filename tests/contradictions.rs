@@ -350,6 +350,7 @@ fn whole() -> SolveOptions {
 #[test]
 fn planted_contradictions_are_named_exactly() {
     let mut wrong = Vec::new();
+    println!();
     for (mut case, mut twin) in infeasible().into_iter().zip(infeasible()) {
         let solved = case.solve(&whole());
         // The same in calls of one sweep, which end when it is named: the twin goes the same way.
@@ -380,6 +381,7 @@ fn planted_contradictions_are_named_exactly() {
 #[test]
 fn where_all_can_be_met_no_contradiction_is_reported() {
     let mut wrong = Vec::new();
+    println!();
     for mut case in feasible() {
         let solved = case.solve(&whole());
         let violation = case.violation();
@@ -507,5 +509,106 @@ fn the_lightest_set_is_named_whatever_the_priorities() {
             let solved = case.solve(&whole());
             assert_eq!((solved.outcome, &solved.conflicts), (Outcome::Infeasible, &case.planted), "{ratio}, {lighter}");
         }
+    }
+}
+
+/// Numbers that are the same everywhere.
+struct Random(u64);
+
+impl Random {
+    /// One of `0..n`.
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % n
+    }
+
+    fn one_of(&mut self, values: [f64; 3]) -> f64 {
+        values[self.below(3)]
+    }
+}
+
+#[test]
+fn contradictions_planted_at_random_are_named_exactly() {
+    let mut random = Random(12345);
+    for trial in 0..40 {
+        let (n, count) = (4 + random.below(6), 1 + random.below(5));
+        let (play, ratio) = (random.one_of([0.005, 0.03, 0.1]), random.one_of([1.1, 2.0, 10.0]));
+        let scale = random.one_of([1e-3, 1.0, 1e3]);
+        let mut mesh = grid(n);
+        mesh.points.iter_mut().for_each(|point| *point *= scale);
+        let all = edges(&mesh);
+        let mut which: Vec<usize> = (0..count).map(|_| random.below(all.len())).collect();
+        which.sort_unstable();
+        which.dedup();
+        let mut case = case_of("random", &mesh);
+        case.lengths(&all, play, ratio);
+        case.longer(&which.iter().map(|i| all[*i]).collect::<Vec<_>>(), 1.0);
+        for _ in 0..random.below(3) {
+            let by = [0.1 * random.below(10) as f64, 0.0, 0.2 * random.below(10) as f64];
+            case.drag(random.below(n * n) as u32, scale * DVec3::from(by));
+        }
+        case.solver.init().unwrap();
+        let solved = case.solve(&whole());
+        let what = format!("problem {trial}: {n} points a side, play {play}, priorities 1 and {ratio}, scale {scale}");
+        assert_eq!((solved.outcome, &solved.conflicts), (Outcome::Infeasible, &case.planted), "{what}");
+        assert!(solved.farthest <= BOUND && case.violation() <= 1e-9, "{what}: {}", solved.farthest);
+    }
+}
+
+/// A ring of sides of 1 with more constraints, all of which the regular polygon meets, and a handle somewhere else.
+fn mixed(random: &mut Random) -> Case {
+    let n = 3 + random.below(5) as u32;
+    let all: Vec<u32> = (0..n).collect();
+    let mut case = case("mixed", &polygon(n), &ring(n));
+    for edge in ring(n) {
+        if random.below(4) > 0 {
+            case.length(edge, 1.0, random.one_of([2.0, 3.0, 5.0]));
+        }
+    }
+    let others: [(&str, &[u32], &[f64]); 4] = [
+        ("Plane", &all, &[]),
+        ("Orientation", &all, &[0.0, 0.0, 1.0]),
+        ("RegularPolygon", &all, &[]),
+        ("EqualLengths", &ring(n).concat(), &[]),
+    ];
+    for (type_name, indices, scalars) in others {
+        if random.below(2) == 0 {
+            case.hard(type_name, indices, random.one_of([2.0, 3.0, 5.0]), scalars);
+        }
+    }
+    let at = case.at(1);
+    case.hard("OnPlane", &[1], 2.0, &[at.x, at.y, at.z, 0.0, 0.0, 1.0]);
+    case.hard("OnLine", &[1], 2.0, &[at.x, at.y, at.z, 1.0, 0.0, 0.0]);
+    case.drag(random.below(n as usize) as u32, DVec3::new(0.3 * random.below(9) as f64, 0.2, 0.1));
+    case
+}
+
+#[test]
+fn among_mixed_types_the_planted_one_is_named_and_without_it_none() {
+    let mut random = Random(777);
+    for trial in 0..80 {
+        let mut twin = mixed(&mut Random(random.0));
+        let mut case = mixed(&mut random);
+        twin.solver.init().unwrap();
+        let solved = twin.solve(&whole());
+        assert!(solved.conflicts.is_empty(), "problem {trial}: {:?}", solved.conflicts);
+        let at = case.at(0);
+        match random.below(3) {
+            0 => {
+                case.length([0, 1], 1.0, 2.0);
+                case.plant("EdgeLength", &[0, 1], 1.0, &[1.7, 1.7]);
+            }
+            1 => case.plant("OnPlane", &[1], 1.0, &[0.0, 0.0, 0.8, 0.0, 0.0, 1.0]),
+            _ => {
+                case.hard("OnPlane", &[0], 2.0, &[at.x, at.y, at.z, 1.0, 0.0, 0.0]);
+                case.plant("OnLine", &[0], 1.0, &[at.x + 0.7, at.y, at.z, 0.0, 1.0, 0.0]);
+            }
+        }
+        case.solver.init().unwrap();
+        let solved = case.solve(&whole());
+        let what = format!("problem {trial}, {} sweeps", solved.sweeps);
+        assert_eq!((solved.outcome, &solved.conflicts), (Outcome::Infeasible, &case.planted), "{what}");
+        // Degenerate shapes are left before the last digits.
+        assert!(solved.farthest <= BOUND && case.violation() <= 1e-3, "{what}: {:e}", case.violation());
     }
 }

@@ -13,7 +13,8 @@
 //!    stays hard if all that are not given up are met (a deletion filter: Chinneck 2008, "Feasibility and infeasibility
 //!    in optimization", chapter 2).
 //! 4. *Exchange*: each that is left, the heaviest first, is made hard once more, and lighter ones are elastic. Where
-//!    those that are violated then, after hardening of their own, weigh less together, they are given up instead.
+//!    those that are violated then, after hardening of their own, weigh less together, they are given up instead. It
+//!    is tried from the points in hand and then from `p⁰`.
 //!
 //! Sets are not convex: what is found is *a* small set, around the points in hand. A trial goes on from sweep to sweep
 //! and from call to call, so a search may be spread over as many calls as the host likes.
@@ -61,6 +62,8 @@ struct Exchange {
     heavy: usize,
     given_up: Vec<usize>,
     points: Vec<DVec3>,
+    /// True once it is tried from `p⁰`, where the way from the points in hand led nowhere.
+    is_from_initial: bool,
 }
 
 /// A search under way.
@@ -249,10 +252,19 @@ impl Search {
     }
 
     fn take_back_exchange(&mut self, engine: &mut Engine) -> Option<Verdict> {
-        if let Some(exchange) = self.exchange.take() {
-            (self.given_up, self.points) = (exchange.given_up, exchange.points);
+        let Some(mut exchange) = self.exchange.take() else { return self.exchange_next(engine) };
+        self.to_harden.clear();
+        self.given_up.clone_from(&exchange.given_up);
+        if exchange.is_from_initial {
+            self.points = exchange.points;
+            return self.exchange_next(engine);
         }
-        self.exchange_next(engine)
+        exchange.is_from_initial = true;
+        self.given_up.retain(|i| *i != exchange.heavy);
+        self.exchange = Some(exchange);
+        engine.splitting.points.copy_from_slice(engine.splitting.quadratic.initial());
+        self.enter(Stage::Elastic, engine);
+        None
     }
 
     fn exchange_next(&mut self, engine: &mut Engine) -> Option<Verdict> {
@@ -263,7 +275,7 @@ impl Search {
                 continue;
             }
             let given_up = self.given_up.clone();
-            self.exchange = Some(Exchange { heavy, given_up, points: self.points.clone() });
+            self.exchange = Some(Exchange { heavy, given_up, points: self.points.clone(), is_from_initial: false });
             self.given_up.retain(|i| *i != heavy);
             engine.splitting.points.clone_from(&self.points);
             self.enter(Stage::Elastic, engine);
