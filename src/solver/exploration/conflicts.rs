@@ -160,7 +160,6 @@ impl Engine {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::mesh::Topology;
     use crate::mesh::patterns::height_field;
     use crate::problem::FairnessRows;
