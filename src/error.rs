@@ -119,6 +119,13 @@ impl Error {
         self
     }
 
+    /// Puts `place` in the place of the one already there, for callers whose argument has another name.
+    #[must_use]
+    pub fn with_place(mut self, place: impl fmt::Display) -> Self {
+        self.place = place.to_string();
+        self
+    }
+
     /// The kind of refusal.
     pub fn status(&self) -> Status {
         self.status

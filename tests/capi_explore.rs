@@ -146,7 +146,7 @@ fn what_does_not_fit_is_refused_by_name() {
     };
     let edge = abi.add("EdgeLength", &[0, 1], 1.0);
     refused(shapeop_setHard(abi.0, edge, 2), SO_INVALID_VALUE, "is_hard: expected 0 or 1, found 2");
-    refused(shapeop_setHard(abi.0, 7, 1), SO_UNMATCHING_CONSTRAINT_ID, "7");
+    refused(shapeop_setHard(abi.0, 7, 1), SO_UNMATCHING_CONSTRAINT_ID, "ids[0]: 7 is none of the 1 ids given out");
     let flat = abi.add("EdgeStrain", &[2, 2], 1.0);
     refused(shapeop_setHard(abi.0, flat, 1), SO_INVALID_VALUE, "cannot be hard");
     // SAFETY: null, and live numbers.

@@ -1,138 +1,204 @@
-//! Caps of multipliers, and which constraints contradict each other.
+//! Caps of multipliers, and when it is time to search for contradictions.
 //!
 //! Every hard constraint is elastic: violating it by a length `d` costs `ρ d`, so its multiplier never exceeds `ρ`.
-//! Where the cap is above the multiplier of the solution, the elastic solution is the hard one. A multiplier that stays
-//! at its cap while its constraint is violated gets a cap ten times as high, three times; after that the constraint
-//! takes part in a contradiction.
+//! Where the cap is above the multiplier of the solution, the elastic solution is the hard one. Caps are proportional to
+//! priorities and are raised together, so that their ratios, which decide who gives way, do not depend on how often
+//! they were raised.
 //!
-//! As the cost is of the length and not of its square, few constraints are violated and the others are met. Caps that
-//! fall where the violation is large make them fewer still (reweighting); then every one of them is made hard again in
-//! turn, the least violated first, and stays hard if the others can still be met without the rest (a deletion filter,
-//! Chinneck 2008, "Feasibility and infeasibility in optimization", chapter 2). Sets are not convex: what is found is
-//! *a* small set, around the points in hand.
+//! Sweeps of a contradiction go on for ever: multipliers grow to their caps, or sets that are not convex throw the rows
+//! to and fro. What tells them is that the largest violation of the points does not fall. Where multipliers are at their
+//! caps, these are raised then, in case they were too low; after some looks in vain the search ([`super::search`])
+//! decides.
 
 use glam::DVec3;
 
+use super::distances;
+use super::engine::Engine;
 use super::splitting::Splitting;
-use super::{Engine, distances};
-use crate::constraints::{ConstraintId, ConstraintSet};
+use crate::constraints::ConstraintSet;
+use crate::error::Result;
 
 /// The first cap over the larger of the objective's gradient at `p⁰` and the force that moves a point of mean stiffness
-/// by the mean extent of a constraint, for a priority of 1.
+/// by the mean extent of a constraint, for the lowest priority.
 const CAP: f64 = 10.0;
 
-/// By how much a cap is raised, and how often.
-const RAISE: f64 = 10.0;
-pub(super) const RAISES: u32 = 3;
+/// By how much caps are raised, and how often.
+const RAISE: f64 = 5.0;
+const RAISES: u32 = 2;
 
-/// Sweeps in which a multiplier at its cap must have left it.
+/// The penalty's growth with each raise. A set that is not convex can throw a constraint's points as far as cap over
+/// penalty: that must not grow out of the model.
+const STIFFER: f64 = 3.0;
+
+/// Priorities over the lowest one are taken from this range, for the same reason. The search compares the priorities
+/// themselves.
+const PRIORITIES: [f64; 2] = [0.25, 4.0];
+
+/// Sweeps between looks at the largest violation.
 pub(super) const PATIENCE: u32 = 25;
 
+/// A look is in vain if the largest violation is above this part of what it was when it last fell.
+const FALLEN: f64 = 0.9;
+
+/// Looks in vain, one behind the other, after which the search begins; where caps cannot be raised any more, the first
+/// search begins at once.
+const LOOKS: u32 = 4;
+
 /// A constraint counts as violated from this part of the mean extent on.
-const VIOLATED: f64 = 1e-4;
+pub(super) const VIOLATED: f64 = 1e-4;
 
-/// Rounds of reweighting, sweeps in each, and the violation, over the mean extent, at which a cap is halved.
-const ROUNDS: u32 = 5;
-const ROUND_SWEEPS: u32 = 40;
-const HALVED_AT: f64 = 1e-2;
+/// What every hard constraint weighs where not all can be met.
+pub(super) struct Priorities {
+    /// As the user gave them.
+    pub(super) weights: Vec<f64>,
+    /// Over the lowest one, within [`PRIORITIES`].
+    pub(super) relative: Vec<f64>,
+    /// The first cap of a relative priority of 1.
+    pub(super) first_cap: f64,
+}
 
-/// Sweeps in which the constraints must be met again once one was made hard.
-const TRIAL_SWEEPS: u32 = 120;
+impl Priorities {
+    /// `force` moves a point of mean stiffness by the mean extent of a constraint.
+    pub(super) fn new(splitting: &Splitting, constraints: &ConstraintSet, force: f64) -> Self {
+        let mut gradient = vec![DVec3::ZERO; splitting.points.len()];
+        splitting.quadratic.gradient(splitting.quadratic.initial(), &mut gradient);
+        let largest = gradient.iter().map(|g| g.length()).fold(force, f64::max);
+        let weight = |id| constraints.get(id).map_or(1.0, |view| view.weight);
+        let weights: Vec<f64> = splitting.hard.items.iter().map(|item| weight(item.id)).collect();
+        let lowest = weights.iter().copied().filter(|weight| *weight > 0.0).fold(f64::INFINITY, f64::min);
+        let [least, most] = PRIORITIES;
+        let relative = weights.iter().map(|weight| (weight / lowest).clamp(least, most)).collect();
+        Self { weights, relative, first_cap: CAP * largest }
+    }
 
-/// The cap of every hard constraint's multiplier. `force` moves a point of mean stiffness by the mean extent of a
-/// constraint.
-pub(super) fn caps(splitting: &Splitting, constraints: &ConstraintSet, force: f64) -> Vec<f64> {
-    let mut gradient = vec![DVec3::ZERO; splitting.points.len()];
-    splitting.quadratic.gradient(splitting.quadratic.initial(), &mut gradient);
-    let largest = gradient.iter().map(|g| g.length()).fold(force, f64::max);
-    let priority = |id| constraints.get(id).map_or(1.0, |view| view.weight);
-    splitting.hard.items.iter().map(|item| CAP * largest * priority(item.id)).collect()
+    /// The caps after so many raises.
+    pub(super) fn caps(&self, raises: u32) -> Vec<f64> {
+        let cap = self.first_cap * RAISE.powi(raises as i32);
+        self.relative.iter().map(|priority| cap * priority).collect()
+    }
+}
+
+/// Follows a largest violation from look to look.
+pub(super) struct Watch {
+    sweeps: u32,
+    least: f64,
+    /// Looks in vain since it last fell.
+    pub(super) vain: u32,
+}
+
+impl Default for Watch {
+    fn default() -> Self {
+        Self { sweeps: 0, least: f64::INFINITY, vain: 0 }
+    }
+}
+
+impl Watch {
+    /// To be called after every sweep; true every `period` sweeps.
+    pub(super) fn is_due(&mut self, period: u32) -> bool {
+        self.sweeps += 1;
+        self.sweeps.is_multiple_of(period)
+    }
+
+    /// To be called with the largest violation at every look.
+    pub(super) fn see(&mut self, largest: f64) {
+        if largest < FALLEN * self.least {
+            (self.least, self.vain) = (largest, 0);
+        } else {
+            self.vain += 1;
+        }
+    }
+}
+
+/// How a contradiction comes to be suspected.
+pub(super) struct Suspicion {
+    watch: Watch,
+    looks: u32,
+}
+
+impl Default for Suspicion {
+    fn default() -> Self {
+        Self { watch: Watch::default(), looks: LOOKS }
+    }
+}
+
+impl Suspicion {
+    /// Begins anew after a search that found nothing; the next one is twice as far.
+    pub(super) fn dispelled(&self) -> Self {
+        Self { looks: self.looks.saturating_mul(2), ..Self::default() }
+    }
 }
 
 impl Engine {
-    /// Raises the caps of the multipliers that are at theirs. False if they were raised often enough.
-    pub(super) fn raise_caps(&mut self) -> bool {
-        if self.raises >= RAISES {
-            return false;
+    /// To be called after every sweep with the number of multipliers at their caps. True if it is time to search for
+    /// contradictions; before that caps are raised.
+    pub(super) fn suspects(&mut self, capped: usize, constraints: &ConstraintSet) -> Result<bool> {
+        if !self.course.suspicion.watch.is_due(PATIENCE) {
+            return Ok(false);
         }
-        self.raises += 1;
-        let distances = distances(&mut self.splitting.hard, &self.splitting.points);
-        let bound = self.tolerance * self.size;
-        for (cap, distance) in self.splitting.caps.iter_mut().zip(distances) {
-            if distance > bound {
-                *cap *= RAISE;
-            }
+        let all = distances(&mut self.splitting.hard, &self.splitting.points);
+        let largest = all.into_iter().fold(0.0, f64::max);
+        let suspicion = &mut self.course.suspicion;
+        if largest <= VIOLATED * self.extent {
+            // Whatever keeps the sweeps busy, it is no contradiction.
+            suspicion.watch = Watch::default();
+            return Ok(false);
         }
-        self.splitting.forget();
-        true
+        suspicion.watch.see(largest);
+        let vain = suspicion.watch.vain;
+        let was_raised_in_vain = self.raises >= RAISES && suspicion.looks == LOOKS;
+        if vain >= suspicion.looks || was_raised_in_vain && vain > 0 {
+            return Ok(true);
+        }
+        if vain > 0 && capped > 0 && self.raises < RAISES {
+            self.raises += 1;
+            self.splitting.caps = self.priorities.caps(self.raises);
+            self.splitting.set_penalty(STIFFER * self.splitting.penalty, constraints, false)?;
+        }
+        Ok(false)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::mesh::Topology;
+    use crate::mesh::patterns::height_field;
+    use crate::problem::FairnessRows;
+    use crate::problem::Objective;
+    use crate::solver::Solver;
+
+    /// A grid whose edges keep their lengths within 3 %, one of which is to be half as long again.
+    fn contradiction() -> Solver {
+        let mesh = height_field(5, 5, [0.0, 4.0], [0.0, 4.0], |x, y| 0.1 * (x + 0.5 * y).sin()).unwrap();
+        let edges = Topology::new(&mesh).unwrap().edges().to_vec();
+        let mut solver = Solver::new();
+        solver.set_points(&mesh.points).unwrap();
+        let rows = FairnessRows::laplacian(mesh.points.len(), &edges);
+        solver.set_objective(&Objective::default(), rows).unwrap();
+        for (k, [a, b]) in edges.iter().chain([&edges[17]]).enumerate() {
+            let length = mesh.points[*a as usize].distance(mesh.points[*b as usize]);
+            let factors = if k < edges.len() { [0.97, 1.03] } else { [1.5, 1.6] };
+            let id = solver.add_constraint("EdgeLength", &[*a, *b], if k < edges.len() { 2.0 } else { 1.0 }).unwrap();
+            solver.edit_constraint("EdgeLength", id, &factors.map(|factor| factor * length)).unwrap();
+            solver.set_hard(&[id], true).unwrap();
+        }
+        solver.init().unwrap();
+        solver
     }
 
-    /// A small set of hard constraints without which the others can be met; the points are then those that meet them.
-    pub(super) fn find_conflicts(&mut self) -> Vec<ConstraintId> {
-        let base = self.splitting.caps.clone();
-        let violated = VIOLATED * self.extent;
-        // Fewer, by caps that fall where the violation is large.
-        for _ in 0..ROUNDS {
-            let distances = distances(&mut self.splitting.hard, &self.splitting.points);
-            for ((cap, base), distance) in self.splitting.caps.iter_mut().zip(&base).zip(distances) {
-                *cap = base / (1.0 + distance / (HALVED_AT * self.extent));
+    #[test]
+    fn multipliers_stay_within_their_caps_and_points_near_the_model() {
+        let mut solver = contradiction();
+        for sweep in 0..800 {
+            solver.solve(1).unwrap();
+            let splitting = &solver.explorer.engine.as_ref().unwrap().splitting;
+            let all = splitting.multipliers();
+            for (item, cap) in splitting.hard.items.iter().zip(&splitting.caps) {
+                let squares: f64 = all[item.rows()].iter().map(|u| u.length_squared()).sum();
+                let multiplier = splitting.penalty * item.scale * squares.sqrt();
+                assert!(multiplier <= cap * (1.0 + 1e-12), "sweep {sweep}: {multiplier:e} above {cap:e}");
             }
-            self.splitting.forget();
-            self.sweeps(ROUND_SWEEPS);
+            assert!(solver.points.iter().all(|point| point.length() < 12.0), "sweep {sweep}");
         }
-        let found = distances(&mut self.splitting.hard, &self.splitting.points);
-        let mut given_up: Vec<usize> = (0..found.len()).filter(|&i| found[i] > violated).collect();
-        given_up.sort_by(|&a, &b| found[a].total_cmp(&found[b]));
-        // The others must be met without them.
-        self.splitting.caps.copy_from_slice(&base);
-        loop {
-            given_up.iter().for_each(|&i| self.splitting.caps[i] = 0.0);
-            let missed = self.missed(&given_up);
-            if missed.is_empty() {
-                break;
-            }
-            given_up.extend(missed);
-            if given_up.len() >= found.len() {
-                break;
-            }
-        }
-        // Each in turn, the least violated first.
-        for i in given_up.clone() {
-            let kept = (self.splitting.points.clone(), self.splitting.rows.clone());
-            self.splitting.caps[i] = base[i];
-            let rest: Vec<usize> = given_up.iter().copied().filter(|&other| other != i).collect();
-            if self.missed(&rest).is_empty() {
-                given_up = rest;
-            } else {
-                self.splitting.caps[i] = 0.0;
-                (self.splitting.points, self.splitting.rows) = kept;
-                self.splitting.forget();
-            }
-        }
-        let mut ids: Vec<ConstraintId> = given_up.iter().map(|&i| self.splitting.hard.items[i].id).collect();
-        ids.sort_unstable();
-        ids
-    }
-
-    /// The constraints, apart from those given up, that some sweeps do not meet.
-    fn missed(&mut self, given_up: &[usize]) -> Vec<usize> {
-        let bound = VIOLATED * self.extent;
-        let mut missed = Vec::new();
-        for _ in 0..TRIAL_SWEEPS / ROUND_SWEEPS {
-            self.splitting.forget();
-            self.sweeps(ROUND_SWEEPS);
-            let distances = distances(&mut self.splitting.hard, &self.splitting.points);
-            missed = (0..distances.len()).filter(|i| distances[*i] > bound && !given_up.contains(i)).collect();
-            if missed.is_empty() {
-                break;
-            }
-        }
-        missed
-    }
-
-    fn sweeps(&mut self, count: u32) {
-        for _ in 0..count {
-            self.sweep();
-        }
+        assert_eq!(solver.found().unwrap().conflicts, [40]);
     }
 }

@@ -7,18 +7,19 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::conflicts;
+use super::conflicts::{Priorities, Suspicion};
 use super::finish::{self, Finish, Finished, Kept, Residuals};
 use super::local::{self, Local};
 use super::quadratic::ObjectiveTerms;
+use super::search::Search;
 use super::splitting::{Splitting, Sweep};
 use super::{Explorer, Found};
-use crate::constraints::ConstraintId;
+use crate::constraints::{ConstraintId, ConstraintSet};
 use crate::error::Result;
-use crate::solver::{Outcome, Progress, ProgressFn, Report, SolveOptions, Solver};
+use crate::solver::{Outcome, PARALLEL_POINTS, Progress, ProgressFn, Report, SolveOptions, Solver};
 
-/// Sweeps before the first finish: so many in any case, and more, up to the second number, while constraints become active or
-/// inactive in [`SETTLED`] sweeps. A step of the finish costs as much as some ten to thirty sweeps.
+/// Sweeps before the first finish, and more, up to [`LATEST`], while constraints become active or inactive within
+/// [`SETTLED`] sweeps: a step of the finish costs as much as ten to sixty of them.
 const FIRST: u32 = 20;
 const SETTLED: u32 = 5;
 const LATEST: u32 = 40;
@@ -29,6 +30,18 @@ const NEAR: f64 = 0.05;
 /// Sweeps between looks at the balance of the penalty, and how often it may be changed by that.
 const BALANCE: u32 = 10;
 const MOST_CHANGES: u32 = 4;
+
+/// Residuals of a solution over the tolerance: those of Newton steps are computed with another penalty.
+const JUDGED: f64 = 10.0;
+
+/// Sweeps between looks whether sweeps at rest are at a solution.
+const REST: u32 = 10;
+
+/// Sweeps at most in which the others are to be met to the last digits once a contradiction has been named.
+const SETTLING: u32 = 300;
+
+/// Sweeps between finishes at most then: nothing else is left to do.
+const AGAIN: u32 = 40;
 
 /// What outlives a change of the constraints.
 #[derive(Default)]
@@ -48,13 +61,79 @@ pub(super) struct Engine {
     /// The mean extent of hard constraints.
     pub(super) extent: f64,
     pub(super) tolerance: f64,
+    /// The penalty of the first sweep, and how often it was balanced.
+    pub(super) first_penalty: f64,
     pub(super) changes: u32,
+    pub(super) priorities: Priorities,
     /// How often caps were raised.
     pub(super) raises: u32,
+    pub(super) course: Course,
     /// Where more than one thread pays: the pool.
     pub(super) pool: Option<Arc<rayon::ThreadPool>>,
     /// Seconds that the last judgement of the points took: a time budget has to leave them.
     pub(super) judge_seconds: f64,
+}
+
+/// What is counted from sweep to sweep, over any number of calls, until something changes that it depends on.
+pub(super) struct Course {
+    sweeps: u32,
+    /// Sweeps in which no constraint became active or inactive.
+    settled: u32,
+    /// The number of sweeps from which on a finish is tried again.
+    next_finish: u32,
+    /// The least residual, and sweeps since it fell.
+    least: f64,
+    idle: u32,
+    pub(super) suspicion: Suspicion,
+    search: Option<Search>,
+    named: Option<Named>,
+}
+
+/// A contradiction that was found.
+struct Named {
+    /// The constraints that are given up, by item and by id.
+    items: Vec<usize>,
+    ids: Vec<ConstraintId>,
+    /// The number of sweeps at which the points are taken as they are.
+    until: u32,
+    /// True once the others are met to the last digits, as far as that could be had.
+    is_settled: bool,
+}
+
+impl Default for Course {
+    fn default() -> Self {
+        Self {
+            sweeps: 0,
+            settled: 0,
+            next_finish: FIRST,
+            least: f64::INFINITY,
+            idle: 0,
+            suspicion: Suspicion::default(),
+            search: None,
+            named: None,
+        }
+    }
+}
+
+impl Course {
+    fn see(&mut self, sweep: &Sweep) {
+        self.sweeps += 1;
+        self.settled = if sweep.switched == 0 { self.settled + 1 } else { 0 };
+        if sweep.residual < 0.999 * self.least {
+            (self.least, self.idle) = (sweep.residual, 0);
+        } else {
+            self.idle += 1;
+        }
+    }
+
+    /// The number of constraints that are given up.
+    fn given_up(&self) -> usize {
+        self.named.as_ref().map_or(0, |named| named.items.len())
+    }
+
+    fn is_settled(&self) -> bool {
+        self.named.as_ref().is_some_and(|named| named.is_settled)
+    }
 }
 
 /// The largest distance of a constraint's points from its first.
@@ -68,7 +147,9 @@ impl Memory {
     /// Takes what `engine` knows.
     pub(super) fn take(&mut self, engine: &Engine) {
         let splitting = &engine.splitting;
-        self.penalty = Some(splitting.penalty);
+        // A penalty that was raised for a contradiction is none for what comes after.
+        let is_raised = engine.raises > 0 || engine.course.search.is_some();
+        self.penalty = Some(if is_raised { engine.first_penalty } else { splitting.penalty });
         self.multipliers.clear();
         let all = splitting.multipliers();
         for item in &splitting.hard.items {
@@ -77,12 +158,14 @@ impl Memory {
         }
     }
 
-    /// Gives a new splitting the multipliers of the constraints that were there before.
+    /// Gives a new splitting the multipliers of the constraints that were there before, none beyond its cap: what they
+    /// were balanced with may be gone.
     pub(super) fn give(&self, splitting: &mut Splitting) {
         let mut all = vec![DVec3::ZERO; splitting.rows.len()];
-        for item in &splitting.hard.items {
+        for (item, cap) in splitting.hard.items.iter().zip(&splitting.caps) {
             if let Some(known) = self.multipliers.get(&item.id).filter(|known| known.len() == item.row_count) {
                 all[item.rows()].copy_from_slice(known);
+                item.cut(&mut all[item.rows()], *cap);
             }
         }
         splitting.resume(&all, 1.0);
@@ -105,13 +188,11 @@ impl Engine {
         report.energy_before = self.objective_value();
         let has_budget = options.time_budget_seconds > 0.0;
         let sweeping_seconds = options.time_budget_seconds - self.judge_seconds;
-        let is_over = |started: &Instant| has_budget && started.elapsed().as_secs_f64() >= sweeping_seconds;
         // While a handle moves, frames come before digits.
-        let may_finish = wants_finish && !(has_budget && explorer.has_new_targets);
-        let (mut settled, mut next_finish, mut least, mut idle) = (0, FIRST, f64::INFINITY, 0);
-        let mut capped_for = 0;
+        let is_dragged = has_budget && explorer.has_new_targets;
         let follows = solver.forces.has_forces_on_faces();
-        while found.sweeps < options.max_iterations {
+        // A contradiction stays one where nothing has changed.
+        while found.sweeps < options.max_iterations && !self.course.is_settled() {
             if follows {
                 self.take_forces(solver, &solver.points);
             }
@@ -136,49 +217,53 @@ impl Engine {
                 report.outcome = Outcome::Cancelled;
                 break;
             }
-            settled = if sweep.switched == 0 { settled + 1 } else { 0 };
-            if sweep.residual < 0.999 * least {
-                (least, idle) = (sweep.residual, 0);
-            } else {
-                idle += 1;
-            }
-            let is_near = sweep.primal <= NEAR * self.extent || idle > 3 * BALANCE;
-            if may_finish && is_near && found.sweeps >= next_finish && (settled >= SETTLED || found.sweeps >= LATEST) {
-                let is_solution = self.finish(&mut found, options, started)?;
+            if self.course.search.is_some() {
+                found.search_sweeps += 1;
+                self.search(sweep.capped, &solver.constraints)?;
                 solver.points.copy_from_slice(&self.splitting.points);
-                // Forces on faces were held while the points moved.
-                let has_followed = !follows || self.take_forces(solver, &solver.points) <= self.tolerance * self.force;
-                if is_solution && has_followed {
+            } else {
+                self.course.see(&sweep);
+                if wants_finish && !is_dragged && self.is_time_to_finish(&sweep) {
+                    self.finish(&mut found, options, started)?;
+                    solver.points.copy_from_slice(&self.splitting.points);
+                    // Forces on faces were held while the points moved.
+                    let has_followed =
+                        !follows || self.take_forces(solver, &solver.points) <= self.tolerance * self.force;
+                    if self.is_solved(&mut found) {
+                        if has_followed {
+                            report.outcome = Outcome::Converged;
+                            break;
+                        }
+                        self.course.next_finish = 0;
+                    }
+                }
+                if self.is_at_rest(&sweep, options) && self.is_solved(&mut found) {
                     report.outcome = Outcome::Converged;
                     break;
                 }
-                next_finish = if is_solution { 0 } else { found.sweeps + found.sweeps.max(2 * SETTLED) };
+                if self.course.named.is_none() {
+                    let capped = sweep.capped;
+                    if self.suspects(capped, &solver.constraints)? && !is_dragged {
+                        self.course.search = Some(Search::begin(self, &solver.constraints)?);
+                    } else {
+                        self.balance(solver)?;
+                    }
+                } else {
+                    self.settle();
+                }
             }
-            if is_over(&started) {
+            if has_budget && started.elapsed().as_secs_f64() >= sweeping_seconds {
                 report.outcome = Outcome::TimeBudget;
                 break;
             }
-            if self.is_at_rest(&sweep, options) {
-                report.outcome = Outcome::Converged;
-                break;
+        }
+        if let Some(named) = &mut self.course.named {
+            found.conflicts.clone_from(&named.ids);
+            let has_ended = matches!(report.outcome, Outcome::Converged | Outcome::IterationLimit);
+            named.is_settled |= report.outcome == Outcome::Converged;
+            if has_ended || named.is_settled {
+                report.outcome = Outcome::Infeasible;
             }
-            capped_for = if sweep.capped > 0 { capped_for + 1 } else { 0 };
-            let is_stuck = capped_for >= conflicts::PATIENCE;
-            if is_stuck {
-                capped_for = 0;
-            }
-            // Sweeps at rest with multipliers at their caps leave no residual, but a violation.
-            if is_stuck && self.is_violated() {
-                if self.raise_caps() {
-                    self.splitting.set_penalty(2.0 * self.splitting.penalty, &solver.constraints, false)?;
-                } else if may_finish {
-                    found.conflicts = self.find_conflicts();
-                    solver.points.copy_from_slice(&self.splitting.points);
-                    report.outcome = Outcome::Infeasible;
-                    break;
-                }
-            }
-            self.balance(&mut idle, found.sweeps, solver)?;
         }
         let judging = Instant::now();
         self.judge(&mut found);
@@ -191,6 +276,64 @@ impl Engine {
         report.factorisation_count = found.factorisations;
         self.judge_seconds = judging.elapsed().as_secs_f64();
         Ok((report, found))
+    }
+
+    /// To be called when something changed that contradictions depend on, other than what a new engine is made for.
+    pub(super) fn start_over(&mut self, constraints: &ConstraintSet) -> Result<()> {
+        let course = std::mem::take(&mut self.course);
+        if let Some(search) = &course.search {
+            self.splitting.set_penalty(search.penalty, constraints, false)?;
+            self.splitting.restart();
+        }
+        self.splitting.caps = self.priorities.caps(self.raises);
+        self.splitting.forget();
+        Ok(())
+    }
+
+    /// Goes on with the search, and takes up what it ends with.
+    fn search(&mut self, capped: usize, constraints: &ConstraintSet) -> Result<()> {
+        let Some(mut search) = self.course.search.take() else { return Ok(()) };
+        let Some(items) = search.after_sweep(capped, self) else {
+            self.course.search = Some(search);
+            return Ok(());
+        };
+        let mut penalty = search.penalty;
+        if !items.is_empty() {
+            // It was the contradiction that these were raised for.
+            (self.raises, self.changes, penalty) = (0, 0, self.first_penalty);
+        }
+        self.splitting.set_penalty(penalty, constraints, false)?;
+        self.splitting.caps = self.priorities.caps(self.raises);
+        items.iter().for_each(|&i| self.splitting.caps[i] = 0.0);
+        self.splitting.restart();
+        self.course = Course { suspicion: self.course.suspicion.dispelled(), ..Course::default() };
+        if !items.is_empty() {
+            let mut ids: Vec<ConstraintId> = items.iter().map(|&i| self.splitting.hard.items[i].id).collect();
+            ids.sort_unstable();
+            self.course.named = Some(Named { items, ids, until: SETTLING, is_settled: false });
+        }
+        Ok(())
+    }
+
+    /// Takes the points as they are if meeting the others to the last digits takes too long.
+    fn settle(&mut self) {
+        if let Some(named) = &mut self.course.named {
+            named.is_settled = self.course.sweeps >= named.until;
+        }
+    }
+
+    /// True if sweeps seem to be near enough for Newton steps.
+    fn is_time_to_finish(&self, sweep: &Sweep) -> bool {
+        let course = &self.course;
+        let is_near = sweep.primal <= NEAR * self.extent || course.idle > 3 * BALANCE;
+        is_near && course.sweeps >= course.next_finish && (course.settled >= SETTLED || course.sweeps >= LATEST)
+    }
+
+    /// True if the points are a solution of all that is not given up; `found` has the residuals then.
+    fn is_solved(&mut self, found: &mut Found) -> bool {
+        self.judge(found);
+        let are_within = |residuals: Residuals| residuals.are_within(JUDGED * self.tolerance, self.size);
+        found.residuals.is_some_and(are_within) && found.capped == self.course.given_up()
     }
 
     /// Takes the forces as they are at `points`; returns the largest change of one.
@@ -207,40 +350,42 @@ impl Engine {
     pub(super) fn sweep(&mut self) -> Sweep {
         let splitting = &mut self.splitting;
         match &self.pool {
-            Some(pool) if splitting.points.len() >= super::PARALLEL_POINTS => pool.install(|| splitting.sweep(true)),
+            Some(pool) if splitting.points.len() >= PARALLEL_POINTS => pool.install(|| splitting.sweep(true)),
             _ => splitting.sweep(false),
         }
     }
 
-    /// True if a hard constraint is further from its set than the tolerance.
-    fn is_violated(&mut self) -> bool {
-        let bound = self.tolerance * self.size;
-        distances(&mut self.splitting.hard, &self.splitting.points).into_iter().any(|distance| distance > bound)
-    }
-
-    /// True if sweeps alone came to rest.
+    /// True if sweeps alone came to rest, which is looked at now and then.
     fn is_at_rest(&self, sweep: &Sweep, options: &SolveOptions) -> bool {
         let tolerance = options.tolerance.min(self.tolerance) * self.size;
-        options.tolerance > 0.0 && sweep.primal <= tolerance && sweep.largest_move <= tolerance && sweep.capped == 0
+        options.tolerance > 0.0
+            && sweep.primal <= tolerance
+            && sweep.largest_move <= tolerance
+            && sweep.capped == self.course.given_up()
+            && self.course.sweeps.is_multiple_of(REST)
     }
 
     /// Raises a penalty under which the sweeps go round in circles.
-    fn balance(&mut self, idle: &mut u32, sweeps: u32, solver: &Solver) -> Result<()> {
-        if *idle >= 5 * BALANCE && self.changes < MOST_CHANGES && sweeps.is_multiple_of(BALANCE) {
+    fn balance(&mut self, solver: &Solver) -> Result<()> {
+        let course = &mut self.course;
+        if course.idle >= 5 * BALANCE && self.changes < MOST_CHANGES && course.sweeps.is_multiple_of(BALANCE) {
             self.splitting.set_penalty(4.0 * self.splitting.penalty, &solver.constraints, false)?;
             self.changes += 1;
-            *idle = 0;
+            self.course.idle = 0;
         }
         Ok(())
     }
 
-    /// Newton steps from the points in hand. True if a solution was found; what is nearer is kept in any case.
-    fn finish(&mut self, found: &mut Found, options: &SolveOptions, started: Instant) -> Result<bool> {
+    /// Newton steps from the points in hand; what is nearer is kept.
+    fn finish(&mut self, found: &mut Found, options: &SolveOptions, started: Instant) -> Result<()> {
+        let sweeps = self.course.sweeps;
+        let most = if self.course.named.is_some() { AGAIN } else { u32::MAX };
+        self.course.next_finish = sweeps + sweeps.clamp(2 * SETTLED, most);
         let splitting = &self.splitting;
         let blocks =
             |local: &Local| local.items.iter().map(|item| 9 * item.point_count * item.point_count).sum::<usize>();
         if blocks(&splitting.soft) + blocks(&splitting.hard) > finish::MOST_ENTRIES {
-            return Ok(false);
+            return Ok(());
         }
         let (points, u) = (splitting.points.clone(), self.finish_multipliers());
         let mut goes_on =
@@ -259,12 +404,13 @@ impl Engine {
         found.newton_steps += steps;
         found.factorisations += factorisations;
         let merit = |residuals: &Residuals| (residuals.primal / self.size).max(residuals.dual);
-        let is_solution = residuals.are_within(self.tolerance, self.size) && capped == 0;
-        if is_solution || merit(&residuals) < merit(&before) {
+        let is_solution = residuals.are_within(self.tolerance, self.size) && capped == self.course.given_up();
+        // With other constraints at their caps than those that are given up, residuals say little.
+        if is_solution || capped == self.course.given_up() && merit(&residuals) < merit(&before) {
             self.splitting.points = points;
             self.splitting.resume(&u, penalty);
         }
-        Ok(is_solution)
+        Ok(())
     }
 
     /// The finish of the splitting in hand.
@@ -302,7 +448,7 @@ impl Engine {
         };
         let finish = self.finish_of();
         found.capped = finish.capped(&u);
-        found.is_solution = residuals.are_within(10.0 * self.tolerance, self.size) && found.capped == 0;
+        found.is_solution = residuals.are_within(JUDGED * self.tolerance, self.size) && found.capped == 0;
         found.residuals = Some(residuals);
         let splitting = &mut self.splitting;
         found.penalty = splitting.penalty;

@@ -35,6 +35,14 @@ impl Item {
     pub(super) fn rows(&self) -> std::ops::Range<usize> {
         self.first_row..self.first_row + self.row_count
     }
+
+    /// Shortens rows that are longer than `most` model units.
+    pub(super) fn cut(&self, rows: &mut [DVec3], most: f64) {
+        let length = self.scale * rows.iter().map(|row| row.length_squared()).sum::<f64>().sqrt();
+        if length > most {
+            rows.iter_mut().for_each(|row| *row *= most / length);
+        }
+    }
 }
 
 /// The hard constraints of a model, or the soft ones.

@@ -7,7 +7,8 @@
 //!
 //! Sweeps of a splitting method ([`splitting`]) find the neighbourhood of a solution in a few milliseconds; Newton
 //! steps ([`finish`]) then find it to the last digits. Both know a constraint by its projection alone. Multipliers have
-//! a cap, so that constraints which contradict each other are seen by theirs ([`conflicts`]); points, rows and
+//! a cap, so that constraints which contradict each other do no harm until they are found ([`conflicts`], [`search`]);
+//! points, rows and
 //! multipliers are kept from one call to the next, whatever was changed in between. Source: Deng et al. 2015,
 //! "Interactive design exploration for constrained meshes".
 
@@ -17,6 +18,7 @@ mod engine;
 mod finish;
 mod local;
 mod quadratic;
+mod search;
 mod sensitivity;
 mod splitting;
 
@@ -25,11 +27,12 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use self::engine::{Engine, Memory, distances, extent};
+use self::conflicts::Priorities;
+use self::engine::{Course, Engine, Memory, distances, extent};
 use self::finish::Kept;
 use self::quadratic::Quadratic;
 use self::splitting::Splitting;
-use super::{PARALLEL_POINTS, ProgressFn, Report, SolveOptions, Solver};
+use super::{ProgressFn, Report, SolveOptions, Solver};
 use crate::constraints::ConstraintId;
 use crate::error::{Error, Result, Status, finite};
 use crate::problem::{FairnessRows, Mode, Objective};
@@ -37,6 +40,9 @@ use crate::problem::{FairnessRows, Mode, Objective};
 pub use self::finish::Residuals;
 pub use self::quadratic::ObjectiveTerms;
 pub use self::sensitivity::{Sensitivities, WeightClass};
+
+/// Points from which on the finish uses the pool; sweeps do from [`super::PARALLEL_POINTS`] on.
+const PARALLEL_FINISH: usize = 1000;
 
 /// What an exploration was asked for and what it holds.
 #[derive(Default)]
@@ -60,6 +66,8 @@ pub(super) struct Explorer {
 pub struct Found {
     /// Sweeps of the splitting method.
     pub sweeps: u32,
+    /// Those among them that searched for contradictions.
+    pub search_sweeps: u32,
     /// Newton steps.
     pub newton_steps: u32,
     /// Distance from the hard constraints and gradient of the Lagrangian, computed afresh at the end.
@@ -112,7 +120,7 @@ impl Solver {
             return Err(Error::new(Status::InvalidValue, reason));
         }
         for (i, &id) in ids.iter().enumerate() {
-            self.constraints.check_hard(id, is_hard).map_err(|error| error.at(format!("ids[{i}]")))?;
+            self.constraints.check_hard(id, is_hard).map_err(|error| error.with_place(format!("ids[{i}]")))?;
         }
         for &id in ids {
             if self.constraints.set_hard(id, is_hard)? {
@@ -216,7 +224,7 @@ impl Solver {
         let mut explorer = std::mem::take(&mut self.explorer);
         let start = self.points.clone();
         let result = explorer.prepare(self).and_then(|mut engine| {
-            let is_long = self.thread_count != 1 && self.points.len() >= 1000;
+            let is_long = self.thread_count != 1 && self.points.len() >= PARALLEL_FINISH;
             engine.pool = if is_long { self.pool() } else { None };
             let result = engine.run(self, &explorer, options, wants_finish, started, progress);
             explorer.memory.take(&engine);
@@ -281,13 +289,15 @@ impl Explorer {
         if self.has_new_scalars {
             engine.splitting.soft.take_scalars(&solver.constraints.part(false));
             engine.splitting.hard.take_scalars(&solver.constraints.part(true));
-            engine.splitting.forget();
         }
-        engine.take_forces(solver, &solver.points);
-        if self.has_new_targets {
-            engine.splitting.forget();
+        let have_moved = engine.splitting.points != solver.points;
+        // Forces on faces are other ones at every sweep.
+        let have_other_forces =
+            engine.take_forces(solver, &solver.points) > 0.0 && !solver.forces.has_forces_on_faces();
+        if self.has_new_scalars || self.has_new_targets || have_moved || have_other_forces {
+            engine.start_over(&solver.constraints)?;
         }
-        if engine.splitting.points != solver.points {
+        if have_moved {
             engine.splitting.points.copy_from_slice(&solver.points);
             let (multipliers, penalty) = (engine.splitting.multipliers(), engine.splitting.penalty);
             engine.splitting.resume(&multipliers, penalty);
@@ -310,9 +320,11 @@ impl Explorer {
             extents.filter(|extent| *extent > 0.0).fold((0.0, 0), |(sum, count), e| (sum + e, count + 1));
         let extent = if count > 0 { sum / f64::from(count) } else { size };
         let force = stiffness * size;
-        splitting.caps = conflicts::caps(&splitting, &solver.constraints, stiffness * extent);
+        let priorities = Priorities::new(&splitting, &solver.constraints, stiffness * extent);
+        splitting.caps = priorities.caps(0);
         self.memory.give(&mut splitting);
         Ok(Engine {
+            first_penalty: splitting.penalty,
             splitting,
             kept: Kept::default(),
             size,
@@ -320,7 +332,9 @@ impl Explorer {
             extent,
             tolerance: objective.tolerance,
             changes: 0,
+            priorities,
             raises: 0,
+            course: Course::default(),
             pool: None,
             judge_seconds: 0.0,
         })

@@ -33,6 +33,9 @@ const RELAXATION: f64 = 1.6;
 /// Sweeps that Anderson acceleration remembers.
 const MEMORY: usize = 6;
 
+/// The longest accelerated step over the plain one. Longer ones lead out of the model, along what no constraint holds.
+const FARTHEST: f64 = 100.0;
+
 /// The penalty over that at which it and the objective have the same trace. On the surfaces of Fig. 12, of 1, 3, 10 and
 /// 30, 10 needs the fewest sweeps to a tenth of the distance (16), and the first finish succeeds.
 const SHARE: f64 = 10.0;
@@ -295,9 +298,13 @@ impl Splitting {
         sweep
     }
 
-    /// `λ/μ` of all hard constraints, in rows.
+    /// `λ/μ` of all hard constraints, in rows, none beyond its cap.
     pub(super) fn multipliers(&self) -> Vec<DVec3> {
-        self.images.iter().zip(&self.rows).map(|(image, row)| *image - *row).collect()
+        let mut all: Vec<DVec3> = self.images.iter().zip(&self.rows).map(|(image, row)| *image - *row).collect();
+        for (item, cap) in self.hard.items.iter().zip(&self.caps) {
+            item.cut(&mut all[item.rows()], cap / self.penalty);
+        }
+        all
     }
 }
 
@@ -341,6 +348,12 @@ impl Accelerated {
         }
         self.anderson.combine(&self.history, &mut self.combination);
         self.history.combine(&self.combination, &mut self.direction, is_parallel);
+        let length = |steps: &[DVec3]| steps.iter().map(|step| step.length_squared()).sum::<f64>().sqrt();
+        // False for NaN.
+        if !(length(&self.direction) <= FARTHEST * length(&self.step)) {
+            rows.copy_from_slice(next);
+            return;
+        }
         rows.iter_mut().zip(&self.direction).for_each(|(row, step)| *row += *step);
     }
 }
