@@ -91,7 +91,7 @@ impl Accelerator {
             Method::QuasiNewton(_) => QUASI_NEWTON_MEMORY,
         };
         let capacity = if memory == 0 { default } else { memory } as usize;
-        self.history.reset(capacity, point_count);
+        self.history.reset(capacity, point_count, true);
         self.combination.reset(capacity);
         match &mut self.method {
             Method::Anderson(anderson) => anderson.reset(capacity),

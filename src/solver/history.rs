@@ -30,14 +30,17 @@ const PRODUCTS: usize = 4;
 pub(super) struct History {
     /// Pairs at most.
     capacity: usize,
+    /// True if products with moves are computed.
+    has_moves: bool,
     /// Pairs held.
     length: usize,
     /// The place of the newest pair.
     newest: usize,
     /// True once there is an iterate for the next to differ from.
     is_started: bool,
-    /// Every chunk's numbers, one chunk after the other.
+    /// Every chunk's numbers, one chunk after the other, and the pairs and points they are laid out for.
     data: Vec<f64>,
+    layout: (usize, usize),
     /// Where the chunks begin in `data`, and its length.
     data_bounds: Vec<usize>,
     /// Where the chunks begin among the points, and their number.
@@ -74,9 +77,11 @@ impl Combination {
 }
 
 impl History {
-    /// Forgets everything, and has room for `capacity` pairs (at least 1) of `point_count` points from now on.
-    pub(super) fn reset(&mut self, capacity: usize, point_count: usize) {
+    /// Forgets everything, and has room for `capacity` pairs (at least 1) of `point_count` points from now on. Products
+    /// with moves are computed if `has_moves`.
+    pub(super) fn reset(&mut self, capacity: usize, point_count: usize, has_moves: bool) {
         (self.capacity, self.length, self.newest, self.is_started) = (capacity, 0, 0, false);
+        self.has_moves = has_moves;
         self.point_bounds.clear();
         self.point_bounds.extend((0..point_count).step_by(CHUNK_POINTS));
         let chunk_count = self.point_bounds.len();
@@ -84,8 +89,11 @@ impl History {
         let size = (LAST + 2 * capacity) * WIDTH + PRODUCTS * capacity + 1;
         self.data_bounds.clear();
         self.data_bounds.extend((0..=chunk_count).map(|chunk| chunk * size));
-        self.data.clear();
-        self.data.resize(chunk_count * size, 0.0);
+        // With the same layout, what lies beyond the last point is 0 already; all else is written before it is read.
+        if self.layout != (capacity, point_count) {
+            self.data = vec![0.0; chunk_count * size];
+            self.layout = (capacity, point_count);
+        }
         self.results.resize(chunk_count, 0.0);
         for products in [&mut self.move_change, &mut self.change_change] {
             products.resize(capacity * capacity, 0.0);
@@ -122,7 +130,7 @@ impl History {
         }
         self.is_started = true;
         let (capacity, newest, length) = (self.capacity, self.newest, self.length);
-        let bounds = &self.point_bounds;
+        let (bounds, has_moves) = (&self.point_bounds, self.has_moves);
         let work = |chunk: usize, data: &mut [f64], _: &mut f64| {
             let range = bounds[chunk]..bounds[chunk + 1];
             let (points, plain, image) = (&points[range.clone()], &plain[range.clone()], &image[range]);
@@ -148,8 +156,10 @@ impl History {
                 let place = (newest + capacity - age) % capacity;
                 let (s, d) = pairs[2 * place * WIDTH..][..2 * WIDTH].split_at(WIDTH);
                 let products = &mut products[PRODUCTS * place..][..PRODUCTS];
-                (products[0], products[1]) = (dot(s, last_image), dot(d, last_image));
-                (products[2], products[3]) = (dot(s, &new_image_change), dot(d, &new_image_change));
+                (products[1], products[3]) = (dot(d, last_image), dot(d, &new_image_change));
+                if has_moves {
+                    (products[0], products[2]) = (dot(s, last_image), dot(s, &new_image_change));
+                }
             }
             products[PRODUCTS * capacity] = dot(last_plain, last_image);
         };
@@ -258,7 +268,7 @@ mod tests {
         let (n, capacity) = (2 * CHUNK_POINTS + 3, 3);
         let iterates: Vec<_> = (0..6).map(|k| iterate(n, k)).collect();
         let mut history = History::default();
-        history.reset(capacity, n);
+        history.reset(capacity, n, true);
         for [points, plain, image] in &iterates {
             history.push(points, plain, image, false);
         }
@@ -302,7 +312,7 @@ mod tests {
         let n = 9 * CHUNK_POINTS + 100;
         let run = |is_parallel: bool| {
             let (mut history, mut combination) = (History::default(), Combination::default());
-            history.reset(4, n);
+            history.reset(4, n, true);
             for k in 0..6 {
                 let [points, plain, image] = iterate(n, k);
                 history.push(&points, &plain, &image, is_parallel);

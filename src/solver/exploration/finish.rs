@@ -601,7 +601,7 @@ impl Krylov {
     fn new(row_count: usize) -> Self {
         let (mut history, mut anderson, mut combination) =
             (History::default(), Anderson::default(), Combination::default());
-        history.reset(KRYLOV_MEMORY, row_count);
+        history.reset(KRYLOV_MEMORY, row_count, false);
         anderson.reset(KRYLOV_MEMORY);
         combination.reset(KRYLOV_MEMORY);
         let vector = || vec![DVec3::ZERO; row_count];

@@ -316,7 +316,7 @@ impl Share {
 
 impl Accelerated {
     fn reset(&mut self, row_count: usize) {
-        self.history.reset(MEMORY, row_count);
+        self.history.reset(MEMORY, row_count, false);
         self.anderson.reset(MEMORY);
         self.combination.reset(MEMORY);
         self.direction.resize(row_count, DVec3::ZERO);
