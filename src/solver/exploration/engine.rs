@@ -21,7 +21,7 @@ use crate::solver::{Outcome, PARALLEL_POINTS, Progress, ProgressFn, Report, Solv
 /// Sweeps before the first finish, and more, up to [`LATEST`], while constraints become active or inactive within
 /// [`SETTLED`] sweeps: a step of the finish costs as much as ten to sixty of them.
 const FIRST: u32 = 20;
-const SETTLED: u32 = 5;
+const SETTLED: u32 = 10;
 const LATEST: u32 = 40;
 
 /// Largest distance from a hard constraint, over the mean extent of hard constraints, at which a finish is tried.

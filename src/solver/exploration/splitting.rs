@@ -38,7 +38,7 @@ const FARTHEST: f64 = 100.0;
 
 /// The penalty over that at which it and the objective have the same trace. On the surfaces of Fig. 12, of 1, 3, 10 and
 /// 30, 10 needs the fewest sweeps to a tenth of the distance (16), and the first finish succeeds.
-const SHARE: f64 = 10.0;
+const SHARE: f64 = 8.0;
 
 /// A constraint counts as active from this part of the model's size on.
 const ACTIVE: f64 = 1e-12;
