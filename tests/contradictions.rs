@@ -280,7 +280,12 @@ fn among_mixed_types_the_planted_one_is_named_and_without_it_none() {
         let solved = case.solve(&whole());
         let what = format!("problem {trial}, {} sweeps", solved.sweeps);
         assert_eq!((solved.outcome, &solved.conflicts), (Outcome::Infeasible, &case.planted), "{what}");
-        // Degenerate shapes are left before the last digits.
-        assert!(solved.farthest <= BOUND && case.violation() <= 1e-3, "{what}: {:e}", case.violation());
+        // Targets are up to two sizes away. Degenerate shapes are left before the last digits.
+        assert!(
+            solved.farthest <= 2.0 * BOUND && case.violation() <= 1e-3,
+            "{what}: {:e}, {}",
+            case.violation(),
+            solved.farthest
+        );
     }
 }

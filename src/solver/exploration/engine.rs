@@ -94,6 +94,8 @@ struct Named {
     /// The constraints that are given up, by item and by id.
     items: Vec<usize>,
     ids: Vec<ConstraintId>,
+    /// Points that meet the others as far as the search asks for it.
+    points: Vec<DVec3>,
     /// The number of sweeps at which the points are taken as they are.
     until: u32,
     /// True once the others are met to the last digits, as far as that could be had.
@@ -249,7 +251,9 @@ impl Engine {
                         self.balance(solver)?;
                     }
                 } else {
+                    self.balance(solver)?;
                     self.settle();
+                    solver.points.copy_from_slice(&self.splitting.points);
                 }
             }
             if has_budget && started.elapsed().as_secs_f64() >= sweeping_seconds {
@@ -310,15 +314,25 @@ impl Engine {
         if !items.is_empty() {
             let mut ids: Vec<ConstraintId> = items.iter().map(|&i| self.splitting.hard.items[i].id).collect();
             ids.sort_unstable();
-            self.course.named = Some(Named { items, ids, until: SETTLING, is_settled: false });
+            self.course.named =
+                Some(Named { items, ids, points: self.splitting.points.clone(), until: SETTLING, is_settled: false });
         }
         Ok(())
     }
 
-    /// Takes the points as they are if meeting the others to the last digits takes too long.
+    /// Takes the points as they are if meeting the others to the last digits takes too long, or those of the search where
+    /// they are nearer.
     fn settle(&mut self) {
-        if let Some(named) = &mut self.course.named {
-            named.is_settled = self.course.sweeps >= named.until;
+        let Some(named) = self.course.named.as_mut().filter(|named| self.course.sweeps >= named.until) else { return };
+        named.is_settled = true;
+        let hard = &mut self.splitting.hard;
+        let mut largest = |points: &[DVec3]| {
+            let all = distances(hard, points).into_iter().enumerate();
+            all.filter(|(i, _)| !named.items.contains(i)).map(|(_, distance)| distance).fold(0.0, f64::max)
+        };
+        if largest(&named.points) < largest(&self.splitting.points) {
+            self.splitting.points.clone_from(&named.points);
+            self.splitting.restart();
         }
     }
 

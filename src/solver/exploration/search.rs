@@ -1,9 +1,9 @@
 //! Which hard constraints contradict each other: a set, as light as exchanges make it, without which the others are
 //! met.
 //!
-//! The search is made of trials. In each, some constraints are given up (a cap of 0), and sweeps show whether the others
-//! are met or whether their largest violation stops falling. Multipliers begin at 0 and the penalty at a value of the
-//! search's own, so that a trial depends on the points alone and not on how they were reached.
+//! The search is made of trials. In each, some constraints are given up (a cap of 0), and sweeps show whether the
+//! others are met or whether their largest violation stops falling. Multipliers begin at 0 and the penalty at a value
+//! of the search's own, so that a trial depends on the points alone and not on how they were reached.
 //!
 //! 1. *Elastic*: all are elastic with the caps of their priorities. As the cost is of the length and not of its square,
 //!    few constraints are violated, light ones rather than heavy ones, and the others are met. Then caps fall where the
@@ -113,7 +113,8 @@ impl Search {
         Ok(search)
     }
 
-    /// To be called after every sweep with the number of multipliers at their caps; the verdict once there is one. The points then meet all that is not given up.
+    /// To be called after every sweep with the number of multipliers at their caps; the verdict once there is one. The
+    /// points then meet all that is not given up.
     pub(super) fn after_sweep(&mut self, capped: usize, engine: &mut Engine) -> Option<Verdict> {
         if !self.watch.is_due(LOOK) {
             return None;
