@@ -280,9 +280,10 @@ fn among_mixed_types_the_planted_one_is_named_and_without_it_none() {
         let solved = case.solve(&whole());
         let what = format!("problem {trial}, {} sweeps", solved.sweeps);
         assert_eq!((solved.outcome, &solved.conflicts), (Outcome::Infeasible, &case.planted), "{what}");
-        // Targets are up to two sizes away. Degenerate shapes are left before the last digits.
+        // Handles pull from up to two sizes away, a hundred times as hard as the penalty holds at first; degenerate shapes
+        // are left before the last digits.
         assert!(
-            solved.farthest <= 2.0 * BOUND && case.violation() <= 1e-3,
+            solved.farthest <= 4.0 * BOUND && case.violation() <= 1e-3,
             "{what}: {:e}, {}",
             case.violation(),
             solved.farthest

@@ -417,12 +417,24 @@ impl Engine {
         let Finished { points, u, penalty, residuals, steps, factorisations, capped } = finished?;
         found.newton_steps += steps;
         found.factorisations += factorisations;
-        let merit = |residuals: &Residuals| (residuals.primal / self.size).max(residuals.dual);
-        let is_solution = residuals.are_within(self.tolerance, self.size) && capped == self.course.given_up();
-        // With other constraints at their caps than those that are given up, residuals say little.
-        if is_solution || capped == self.course.given_up() && merit(&residuals) < merit(&before) {
+        let size = self.size;
+        let merit = |residuals: &Residuals| (residuals.primal / size).max(residuals.dual);
+        if residuals.are_within(self.tolerance, size) && capped == self.course.given_up() {
             self.splitting.points = points;
             self.splitting.resume(&u, penalty);
+            return Ok(());
+        }
+        // Newton steps end with a penalty of their own, under which residuals look smaller. Under that of the sweeps a
+        // multiplier that is longer than the model would throw points out of it. With other constraints at their caps than
+        // those that are given up, residuals say little.
+        let of_sweeps = self.splitting.penalty;
+        let mut u: Vec<DVec3> = u.iter().map(|u| penalty / of_sweeps * *u).collect();
+        self.splitting.hard.items.iter().for_each(|item| item.cut(&mut u[item.rows()], size));
+        let of_finish: Vec<DVec3> = u.iter().map(|u| of_sweeps / finish::penalty_behind(of_sweeps) * *u).collect();
+        let after = self.finish_of().residuals(&points, &of_finish);
+        if capped == self.course.given_up() && merit(&after) < merit(&before) {
+            self.splitting.points = points;
+            self.splitting.resume(&u, of_sweeps);
         }
         Ok(())
     }
