@@ -247,6 +247,7 @@ impl Engine {
                     let capped = sweep.capped;
                     if self.suspects(capped, &solver.constraints)? && !is_dragged {
                         self.course.search = Some(Search::begin(self, &solver.constraints)?);
+                        solver.points.copy_from_slice(&self.splitting.points);
                     } else {
                         self.balance(solver)?;
                     }
