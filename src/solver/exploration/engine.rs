@@ -34,6 +34,9 @@ const MOST_CHANGES: u32 = 4;
 /// Residuals of a solution over the tolerance: those of Newton steps are computed with another penalty.
 const JUDGED: f64 = 10.0;
 
+/// Residuals over those before at which Newton steps that ended short go on soon.
+const MUCH_NEARER: f64 = 0.1;
+
 /// Sweeps between looks whether sweeps at rest are at a solution.
 const REST: u32 = 10;
 
@@ -420,22 +423,26 @@ impl Engine {
         found.factorisations += factorisations;
         let size = self.size;
         let merit = |residuals: &Residuals| (residuals.primal / size).max(residuals.dual);
-        if residuals.are_within(self.tolerance, size) && capped == self.course.given_up() {
-            self.splitting.points = points;
-            self.splitting.resume(&u, penalty);
+        // With other constraints at their caps than those that are given up, residuals say little, and what is no solution
+        // must not lead out of the model.
+        let farthest =
+            points.iter().zip(&self.splitting.points).map(|(new, old)| new.distance(*old)).fold(0.0, f64::max);
+        let (is_solution, now) = (residuals.are_within(self.tolerance, size), merit(&residuals));
+        if capped != self.course.given_up() || !(is_solution || now < merit(&before) && farthest <= size) {
             return Ok(());
         }
-        // Newton steps end with a penalty of their own, under which residuals look smaller. Under that of the sweeps a
-        // multiplier that is longer than the model would throw points out of it. With other constraints at their caps than
-        // those that are given up, residuals say little.
-        let of_sweeps = self.splitting.penalty;
-        let mut u: Vec<DVec3> = u.iter().map(|u| penalty / of_sweeps * *u).collect();
-        self.splitting.hard.items.iter().for_each(|item| item.cut(&mut u[item.rows()], size));
-        let of_finish: Vec<DVec3> = u.iter().map(|u| of_sweeps / finish::penalty_behind(of_sweeps) * *u).collect();
-        let after = self.finish_of().residuals(&points, &of_finish);
-        if capped == self.course.given_up() && merit(&after) < merit(&before) {
-            self.splitting.points = points;
-            self.splitting.resume(&u, of_sweeps);
+        if now < MUCH_NEARER * merit(&before) {
+            self.course.next_finish = sweeps + SETTLED;
+        }
+        self.splitting.points = points;
+        self.splitting.resume(&u, penalty);
+        if !is_solution {
+            // Multipliers beyond the model's size under the penalty of the sweeps would.
+            let most = size;
+            let mut u = self.splitting.multipliers();
+            self.splitting.hard.items.iter().for_each(|item| item.cut(&mut u[item.rows()], most));
+            let penalty = self.splitting.penalty;
+            self.splitting.resume(&u, penalty);
         }
         Ok(())
     }
