@@ -1,14 +1,14 @@
 //! Caps of multipliers, and when it is time to search for contradictions.
 //!
 //! Every hard constraint is elastic: violating it by a length `d` costs `ρ d`, so its multiplier never exceeds `ρ`.
-//! Where the cap is above the multiplier of the solution, the elastic solution is the hard one. Caps are proportional to
+//! Where the cap is above the multiplier of the solution, the elastic solution is the hard one. Caps grow with the
 //! priorities and are raised together, so that their ratios, which decide who gives way, do not depend on how often
 //! they were raised.
 //!
 //! Sweeps of a contradiction go on for ever: multipliers grow to their caps, or sets that are not convex throw the rows
-//! to and fro. What tells them is that the largest violation of the points does not fall. Where multipliers are at their
-//! caps, these are raised then, in case they were too low; after some looks in vain the search ([`super::search`])
-//! decides.
+//! to and fro. What tells them is that the largest violation of the points does not fall. Where multipliers are at
+//! their caps, these are raised then, in case they were too low; after some looks in vain the search
+//! ([`super::search`]) decides.
 
 use glam::DVec3;
 

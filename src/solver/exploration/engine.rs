@@ -34,6 +34,9 @@ const MOST_CHANGES: u32 = 4;
 /// Residuals of a solution over the tolerance: those of Newton steps are computed with another penalty.
 const JUDGED: f64 = 10.0;
 
+/// Residuals over those before at which Newton steps that ended short go on soon.
+const MUCH_NEARER: f64 = 0.1;
+
 /// Sweeps between looks whether sweeps at rest are at a solution.
 const REST: u32 = 10;
 
@@ -94,6 +97,8 @@ struct Named {
     /// The constraints that are given up, by item and by id.
     items: Vec<usize>,
     ids: Vec<ConstraintId>,
+    /// Points that meet the others as far as the search asks for it.
+    points: Vec<DVec3>,
     /// The number of sweeps at which the points are taken as they are.
     until: u32,
     /// True once the others are met to the last digits, as far as that could be had.
@@ -245,11 +250,14 @@ impl Engine {
                     let capped = sweep.capped;
                     if self.suspects(capped, &solver.constraints)? && !is_dragged {
                         self.course.search = Some(Search::begin(self, &solver.constraints)?);
+                        solver.points.copy_from_slice(&self.splitting.points);
                     } else {
                         self.balance(solver)?;
                     }
                 } else {
+                    self.balance(solver)?;
                     self.settle();
+                    solver.points.copy_from_slice(&self.splitting.points);
                 }
             }
             if has_budget && started.elapsed().as_secs_f64() >= sweeping_seconds {
@@ -310,15 +318,25 @@ impl Engine {
         if !items.is_empty() {
             let mut ids: Vec<ConstraintId> = items.iter().map(|&i| self.splitting.hard.items[i].id).collect();
             ids.sort_unstable();
-            self.course.named = Some(Named { items, ids, until: SETTLING, is_settled: false });
+            self.course.named =
+                Some(Named { items, ids, points: self.splitting.points.clone(), until: SETTLING, is_settled: false });
         }
         Ok(())
     }
 
-    /// Takes the points as they are if meeting the others to the last digits takes too long.
+    /// Takes the points as they are if meeting the others to the last digits takes too long, or those of the search where
+    /// they are nearer.
     fn settle(&mut self) {
-        if let Some(named) = &mut self.course.named {
-            named.is_settled = self.course.sweeps >= named.until;
+        let Some(named) = self.course.named.as_mut().filter(|named| self.course.sweeps >= named.until) else { return };
+        named.is_settled = true;
+        let hard = &mut self.splitting.hard;
+        let mut largest = |points: &[DVec3]| {
+            let all = distances(hard, points).into_iter().enumerate();
+            all.filter(|(i, _)| !named.items.contains(i)).map(|(_, distance)| distance).fold(0.0, f64::max)
+        };
+        if largest(&named.points) < largest(&self.splitting.points) {
+            self.splitting.points.clone_from(&named.points);
+            self.splitting.restart();
         }
     }
 
@@ -403,11 +421,27 @@ impl Engine {
         let Finished { points, u, penalty, residuals, steps, factorisations, capped } = finished?;
         found.newton_steps += steps;
         found.factorisations += factorisations;
-        let merit = |residuals: &Residuals| (residuals.primal / self.size).max(residuals.dual);
-        let is_solution = residuals.are_within(self.tolerance, self.size) && capped == self.course.given_up();
-        // With other constraints at their caps than those that are given up, residuals say little.
-        if is_solution || capped == self.course.given_up() && merit(&residuals) < merit(&before) {
-            self.splitting.points = points;
+        let size = self.size;
+        let merit = |residuals: &Residuals| (residuals.primal / size).max(residuals.dual);
+        // With other constraints at their caps than those that are given up, residuals say little, and what is no solution
+        // must not lead out of the model.
+        let farthest =
+            points.iter().zip(&self.splitting.points).map(|(new, old)| new.distance(*old)).fold(0.0, f64::max);
+        let (is_solution, now) = (residuals.are_within(self.tolerance, size), merit(&residuals));
+        if capped != self.course.given_up() || !(is_solution || now < merit(&before) && farthest <= size) {
+            return Ok(());
+        }
+        if now < MUCH_NEARER * merit(&before) {
+            self.course.next_finish = sweeps + SETTLED;
+        }
+        self.splitting.points = points;
+        self.splitting.resume(&u, penalty);
+        if !is_solution {
+            // Multipliers beyond the model's size under the penalty of the sweeps would.
+            let most = size;
+            let mut u = self.splitting.multipliers();
+            self.splitting.hard.items.iter().for_each(|item| item.cut(&mut u[item.rows()], most));
+            let penalty = self.splitting.penalty;
             self.splitting.resume(&u, penalty);
         }
         Ok(())

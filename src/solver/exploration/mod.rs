@@ -8,9 +8,8 @@
 //! Sweeps of a splitting method ([`splitting`]) find the neighbourhood of a solution in a few milliseconds; Newton
 //! steps ([`finish`]) then find it to the last digits. Both know a constraint by its projection alone. Multipliers have
 //! a cap, so that constraints which contradict each other do no harm until they are found ([`conflicts`], [`search`]);
-//! points, rows and
-//! multipliers are kept from one call to the next, whatever was changed in between. Source: Deng et al. 2015,
-//! "Interactive design exploration for constrained meshes".
+//! points, rows and multipliers are kept from one call to the next, whatever was changed in between. Source: Deng et
+//! al. 2015, "Interactive design exploration for constrained meshes".
 
 mod conflicts;
 mod derivatives;

@@ -1,9 +1,9 @@
 //! Which hard constraints contradict each other: a set, as light as exchanges make it, without which the others are
 //! met.
 //!
-//! The search is made of trials. In each, some constraints are given up (a cap of 0), and sweeps show whether the others
-//! are met or whether their largest violation stops falling. Multipliers begin at 0 and the penalty at a value of the
-//! search's own, so that a trial depends on the points alone and not on how they were reached.
+//! The search is made of trials. In each, some constraints are given up (a cap of 0), and sweeps show whether the
+//! others are met or whether their largest violation stops falling. The first begins at `p⁰`, multipliers begin at 0
+//! and the penalty is one of the search's own, so that what is found does not depend on the way there.
 //!
 //! 1. *Elastic*: all are elastic with the caps of their priorities. As the cost is of the length and not of its square,
 //!    few constraints are violated, light ones rather than heavy ones, and the others are met. Then caps fall where the
@@ -16,7 +16,7 @@
 //!    those that are violated then, after hardening of their own, weigh less together, they are given up instead. It
 //!    is tried from the points in hand and then from `p⁰`.
 //!
-//! Sets are not convex: what is found is *a* small set, around the points in hand. A trial goes on from sweep to sweep
+//! Sets are not convex: what is found is *a* small set, around `p⁰`. A trial goes on from sweep to sweep
 //! and from call to call, so a search may be spread over as many calls as the host likes.
 
 use glam::DVec3;
@@ -91,8 +91,10 @@ pub(super) struct Search {
 pub(super) type Verdict = Vec<usize>;
 
 impl Search {
-    /// Begins a search from the points in hand.
+    /// Begins a search from `p⁰`.
     pub(super) fn begin(engine: &mut Engine, constraints: &ConstraintSet) -> Result<Self> {
+        let initial = engine.splitting.quadratic.initial().to_vec();
+        engine.splitting.points.copy_from_slice(&initial);
         let mut search = Self {
             penalty: engine.splitting.penalty,
             stage: Stage::Elastic,
@@ -105,7 +107,7 @@ impl Search {
             to_harden: Vec::new(),
             to_exchange: Vec::new(),
             exchange: None,
-            points: engine.splitting.points.clone(),
+            points: initial,
         };
         let penalty = CAP * engine.priorities.first_cap / (REACH * engine.extent);
         engine.splitting.set_penalty(penalty, constraints, false)?;
@@ -113,7 +115,8 @@ impl Search {
         Ok(search)
     }
 
-    /// To be called after every sweep with the number of multipliers at their caps; the verdict once there is one. The points then meet all that is not given up.
+    /// To be called after every sweep with the number of multipliers at their caps; the verdict once there is one. The
+    /// points then meet all that is not given up.
     pub(super) fn after_sweep(&mut self, capped: usize, engine: &mut Engine) -> Option<Verdict> {
         if !self.watch.is_due(LOOK) {
             return None;
