@@ -84,6 +84,7 @@ pub(super) struct Course {
     settled: u32,
     /// The number of sweeps from which on a finish is tried again.
     next_finish: u32,
+    finishes: usize,
     /// The least residual, and sweeps since it fell.
     least: f64,
     idle: u32,
@@ -111,6 +112,7 @@ impl Default for Course {
             sweeps: 0,
             settled: 0,
             next_finish: FIRST,
+            finishes: 0,
             least: f64::INFINITY,
             idle: 0,
             suspicion: Suspicion::default(),
@@ -405,12 +407,15 @@ impl Engine {
         if blocks(&splitting.soft) + blocks(&splitting.hard) > finish::MOST_ENTRIES {
             return Ok(());
         }
-        let (points, u) = (splitting.points.clone(), self.finish_multipliers());
+        // What does not succeed under one penalty may under the other.
+        let stiffer = finish::STIFFER[self.course.finishes % finish::STIFFER.len()];
+        self.course.finishes += 1;
+        let (points, u) = (splitting.points.clone(), self.finish_multipliers(stiffer));
         let mut goes_on =
             || options.time_budget_seconds == 0.0 || started.elapsed().as_secs_f64() < options.time_budget_seconds;
         let (tolerance, mut kept) = (self.tolerance, std::mem::take(&mut self.kept));
         let pool = self.pool.clone();
-        let mut finish = self.finish_of();
+        let mut finish = self.finish_of(stiffer);
         let before = finish.residuals(&points, &u);
         let mut run = || finish.run(&points, &u, tolerance, &mut kept, &mut goes_on);
         let finished = match pool {
@@ -436,7 +441,9 @@ impl Engine {
         }
         self.splitting.points = points;
         self.splitting.resume(&u, penalty);
-        if !is_solution {
+        if is_solution {
+            self.course.finishes = 0;
+        } else {
             // Multipliers beyond the model's size under the penalty of the sweeps would.
             let most = size;
             let mut u = self.splitting.multipliers();
@@ -447,15 +454,15 @@ impl Engine {
         Ok(())
     }
 
-    /// The finish of the splitting in hand.
-    pub(super) fn finish_of(&mut self) -> Finish<'_> {
+    /// The finish of the splitting in hand, its penalty so many times as stiff.
+    pub(super) fn finish_of(&mut self, stiffer: f64) -> Finish<'_> {
         let splitting = &mut self.splitting;
         Finish {
             quadratic: &splitting.quadratic,
             soft: &mut splitting.soft,
             hard: &mut splitting.hard,
             caps: &splitting.caps,
-            penalty: finish::penalty_behind(splitting.penalty),
+            penalty: stiffer * splitting.penalty,
             size: self.size,
             force: self.force,
             extent: self.extent,
@@ -463,24 +470,22 @@ impl Engine {
         }
     }
 
-    /// The splitting's multipliers in the finish's scale.
-    pub(super) fn finish_multipliers(&self) -> Vec<DVec3> {
-        let penalty = self.splitting.penalty;
-        let factor = penalty / finish::penalty_behind(penalty);
-        self.splitting.multipliers().iter().map(|u| factor * *u).collect()
+    /// The splitting's multipliers in that finish's scale.
+    pub(super) fn finish_multipliers(&self, stiffer: f64) -> Vec<DVec3> {
+        self.splitting.multipliers().iter().map(|u| *u / stiffer).collect()
     }
 
     /// Computes afresh what the points are worth.
     fn judge(&mut self, found: &mut Found) {
-        let (points, u) = (self.splitting.points.clone(), self.finish_multipliers());
+        let (points, u) = (self.splitting.points.clone(), self.finish_multipliers(finish::STIFFER[0]));
         let pool = self.pool.clone();
-        let mut finish = self.finish_of();
+        let mut finish = self.finish_of(finish::STIFFER[0]);
         let mut residuals = || finish.residuals(&points, &u);
         let residuals = match pool {
             Some(pool) => pool.install(residuals),
             None => residuals(),
         };
-        let finish = self.finish_of();
+        let finish = self.finish_of(finish::STIFFER[0]);
         found.capped = finish.capped(&u);
         found.is_solution = residuals.are_within(JUDGED * self.tolerance, self.size) && found.capped == 0;
         found.residuals = Some(residuals);

@@ -52,9 +52,10 @@ const CHORD_CONVEX: f64 = 0.8;
 const KRYLOV_MEMORY: usize = 12;
 const DIVERGED: f64 = 10.0;
 
-/// The penalty of the finish over that of the sweeps: so stiff that few updates of the multipliers solve the linear
-/// problem.
-const STIFFER: f64 = 30.0;
+/// The penalty of the first finish over that of the sweeps: so stiff that few updates of the multipliers solve the linear
+/// problem. Where constraints follow from others, softer ones are nearer to a minimum: that of the second finish, and so on
+/// in turn.
+pub(super) const STIFFER: [f64; 2] = [30.0, 3.0];
 
 /// The penalty of answers over that of the finish: where curved constraints press hard, the matrix is positive definite
 /// under a stiff penalty only.
@@ -153,11 +154,6 @@ pub(super) struct Finished {
     pub(super) steps: u32,
     pub(super) factorisations: u32,
     pub(super) capped: usize,
-}
-
-/// The penalty that a finish behind sweeps with `penalty` takes.
-pub(super) fn penalty_behind(penalty: f64) -> f64 {
-    STIFFER * penalty
 }
 
 impl System {

@@ -14,6 +14,7 @@ use glam::DVec3;
 
 use super::derivatives::add_transposed;
 use super::distances;
+use super::finish::STIFFER;
 use super::{Engine, Found};
 use crate::error::{Error, Result, Status};
 use crate::solver::Solver;
@@ -112,9 +113,9 @@ impl Engine {
             let of_class = (0..types.len()).filter(|i| WeightClass::Soft(types[*i]) == *class);
             values.push(of_class.map(|i| soft.stiffness[i] * (soft_distances[i] / soft.items[i].scale).powi(2)).sum());
         }
-        let u = self.finish_multipliers();
+        let u = self.finish_multipliers(STIFFER[0]);
         let mut kept = std::mem::take(&mut self.kept);
-        let steps = self.finish_of().answers(&points, &u, &gradients, &mut kept);
+        let steps = self.finish_of(STIFFER[0]).answers(&points, &u, &gradients, &mut kept);
         self.kept = kept;
         let steps = steps?;
         let along = |gradient: &Vec<DVec3>, step: &Vec<DVec3>| {
