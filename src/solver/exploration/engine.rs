@@ -215,7 +215,7 @@ impl Engine {
             }
             let now = Progress {
                 iteration: found.sweeps,
-                evaluations: found.sweeps,
+                evaluations: found.sweeps + found.newton_steps,
                 energy: sweep.residual,
                 largest_move: report.largest_move,
                 solver,
@@ -231,7 +231,22 @@ impl Engine {
             } else {
                 self.course.see(&sweep);
                 if wants_finish && !is_dragged && self.is_time_to_finish(&sweep) {
-                    self.finish(&mut found, options, started)?;
+                    let sweeps = found.sweeps;
+                    let mut is_cancelled = false;
+                    let largest_move = report.largest_move;
+                    let mut goes_on = |points: &[DVec3], steps: u32| {
+                        solver.points.copy_from_slice(points);
+                        let now = Progress {
+                            iteration: sweeps,
+                            evaluations: sweeps + steps,
+                            energy: sweep.residual,
+                            largest_move,
+                            solver,
+                        };
+                        is_cancelled = steps > 0 && progress(&now) == ControlFlow::Break(());
+                        !is_cancelled && !(has_budget && started.elapsed().as_secs_f64() >= sweeping_seconds)
+                    };
+                    self.finish(&mut found, &mut goes_on)?;
                     solver.points.copy_from_slice(&self.splitting.points);
                     // Forces on faces were held while the points moved.
                     let has_followed =
@@ -242,6 +257,10 @@ impl Engine {
                             break;
                         }
                         self.course.next_finish = 0;
+                    }
+                    if is_cancelled {
+                        report.outcome = Outcome::Cancelled;
+                        break;
                     }
                 }
                 if self.is_at_rest(&sweep, options) && self.is_solved(&mut found) {
@@ -397,7 +416,8 @@ impl Engine {
     }
 
     /// Newton steps from the points in hand; what is nearer is kept.
-    fn finish(&mut self, found: &mut Found, options: &SolveOptions, started: Instant) -> Result<()> {
+    /// `goes_on` is asked before each, with the best points so far and the number of steps.
+    fn finish(&mut self, found: &mut Found, goes_on: &mut dyn FnMut(&[DVec3], u32) -> bool) -> Result<()> {
         let sweeps = self.course.sweeps;
         let most = if self.course.named.is_some() { AGAIN } else { u32::MAX };
         self.course.next_finish = sweeps + sweeps.clamp(2 * SETTLED, most);
@@ -411,29 +431,21 @@ impl Engine {
         let stiffer = finish::STIFFER[self.course.finishes % finish::STIFFER.len()];
         self.course.finishes += 1;
         let (points, u) = (splitting.points.clone(), self.finish_multipliers(stiffer));
-        let mut goes_on =
-            || options.time_budget_seconds == 0.0 || started.elapsed().as_secs_f64() < options.time_budget_seconds;
         let (tolerance, mut kept) = (self.tolerance, std::mem::take(&mut self.kept));
         let pool = self.pool.clone();
         let mut finish = self.finish_of(stiffer);
-        let before = finish.residuals(&points, &u);
-        let mut run = || finish.run(&points, &u, tolerance, &mut kept, &mut goes_on);
-        let finished = match pool {
-            Some(pool) => pool.install(run),
-            None => run(),
-        };
+        let pool = pool.as_deref();
+        let before = finish::on(pool, || finish.residuals(&points, &u));
+        let finished = finish.run(&points, &u, tolerance, &mut kept, pool, goes_on);
         self.kept = kept;
         let Finished { points, u, penalty, residuals, steps, factorisations, capped } = finished?;
         found.newton_steps += steps;
         found.factorisations += factorisations;
         let size = self.size;
         let merit = |residuals: &Residuals| (residuals.primal / size).max(residuals.dual);
-        // With other constraints at their caps than those that are given up, residuals say little, and what is no solution
-        // must not lead out of the model.
-        let farthest =
-            points.iter().zip(&self.splitting.points).map(|(new, old)| new.distance(*old)).fold(0.0, f64::max);
         let (is_solution, now) = (residuals.are_within(self.tolerance, size), merit(&residuals));
-        if capped != self.course.given_up() || !(is_solution || now < merit(&before) && farthest <= size) {
+        // With other constraints at their caps than those that are given up, residuals say little.
+        if capped != self.course.given_up() || !(is_solution || now < merit(&before)) {
             return Ok(());
         }
         if now < MUCH_NEARER * merit(&before) {
@@ -480,11 +492,7 @@ impl Engine {
         let (points, u) = (self.splitting.points.clone(), self.finish_multipliers(finish::STIFFER[0]));
         let pool = self.pool.clone();
         let mut finish = self.finish_of(finish::STIFFER[0]);
-        let mut residuals = || finish.residuals(&points, &u);
-        let residuals = match pool {
-            Some(pool) => pool.install(residuals),
-            None => residuals(),
-        };
+        let residuals = finish::on(pool.as_deref(), || finish.residuals(&points, &u));
         let finish = self.finish_of(finish::STIFFER[0]);
         found.capped = finish.capped(&u);
         found.is_solution = residuals.are_within(JUDGED * self.tolerance, self.size) && found.capped == 0;

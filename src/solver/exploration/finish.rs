@@ -33,13 +33,11 @@ use crate::solver::history::{Combination, History};
 /// Newton steps at most.
 const STEPS: u32 = 30;
 
-/// Multiplier updates of one linear problem at most, and to what part they are to lower its residual: for an exact step,
-/// for a convex one, which is near the exact one only, for one with an old factor, and for a derivative that is an
-/// answer.
+/// Multiplier updates of one linear problem at most, and to what part they are to lower its residual: for a step, for one
+/// with an old factor, and for a derivative that is an answer.
 const UPDATES: u32 = 60;
-const ENOUGH_EXACT: f64 = 1e-4;
-const ENOUGH_CONVEX: f64 = 1e-2;
-const ENOUGH_ANSWER: f64 = 1e-10;
+const ENOUGH_STEP: f64 = 1e-2;
+const ENOUGH_ANSWER: f64 = 1e-8;
 const ENOUGH_CHORD: f64 = 0.1;
 
 /// Steps with an old factor at most, and to what part they have to lower the larger residual to count: they cost a fifth
@@ -156,65 +154,106 @@ pub(super) struct Finished {
     pub(super) capped: usize,
 }
 
-impl System {
-    fn enough(&self) -> f64 {
-        if self.is_exact { ENOUGH_EXACT } else { ENOUGH_CONVEX }
+/// How far a run has come.
+struct Course {
+    state: State,
+    /// The state with the least merit so far, and the merits so far.
+    best: State,
+    recent: Vec<f64>,
+    /// True if the exact matrix is to be tried: at first, and where the last step was as short as that.
+    wants_exact: bool,
+    short: f64,
+    steps: u32,
+    factorisations: u32,
+}
+
+/// The work on the pool, if there is one.
+pub(super) fn on<T: Send>(pool: Option<&rayon::ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
+    match pool {
+        Some(pool) => pool.install(work),
+        None => work(),
     }
 }
 
 impl Finish<'_> {
     /// Newton steps from `points` with the multipliers `m u` until both residuals are below their tolerance, or until
-    /// no step helps. `goes_on` is asked before each step.
+    /// no step helps. `goes_on` is asked before each step, with the best points so far and the number of steps.
     pub(super) fn run(
         &mut self,
         points: &[DVec3],
         u: &[DVec3],
         tolerance: f64,
         kept: &mut Kept,
-        goes_on: &mut (dyn FnMut() -> bool + Send),
+        pool: Option<&rayon::ThreadPool>,
+        goes_on: &mut dyn FnMut(&[DVec3], u32) -> bool,
     ) -> Result<Finished> {
-        let mut state = self.state(points.to_vec(), u.to_vec());
-        let prepared = self.prepare(kept)?;
-        let (mut steps, mut factorisations) = (0, 0);
-        let (mut is_short, mut short) = (false, SHORT * self.extent);
-        let mut recent = vec![self.merit(&state)];
-        let mut best = state.clone();
-        while steps < STEPS && !state.residuals.are_within(tolerance, self.size) && goes_on() {
-            let Some(system) = self.system(&state, is_short, Differences::Forward, prepared, &mut factorisations)?
-            else {
-                break;
-            };
-            steps += 1;
-            let limit = recent.iter().rev().take(LOOKS_BACK).copied().fold(0.0, f64::max);
-            let Some(next) = self.step(&state, &system, prepared, limit) else { break };
-            let moves = next.points.iter().zip(&state.points).map(|(new, old)| new.distance(*old));
-            let moved = moves.fold(0.0, f64::max);
-            if is_short && !system.is_exact {
-                short = SHORTER * moved;
-            }
-            is_short = moved <= short;
-            state = next;
-            for _ in 0..CHORDS {
-                if state.residuals.are_within(tolerance, self.size) || !goes_on() {
-                    break;
-                }
-                let (_, whole) = self.solve(&system, prepared, &state.gradient, &state.excess, &state.u, ENOUGH_CHORD);
-                let next = self.moved(&state, &whole, 1.0);
-                let part = if system.is_exact { CHORD_EXACT } else { CHORD_CONVEX };
-                // True for NaN.
-                if !(self.merit(&next) < part * self.merit(&state)) {
-                    break;
-                }
-                state = next;
-            }
-            recent.push(self.merit(&state));
-            if self.merit(&state) < self.merit(&best) {
-                best = state.clone();
-            }
-        }
+        let state = on(pool, || self.state(points.to_vec(), u.to_vec()));
+        let prepared = on(pool, || self.prepare(kept))?;
+        let mut course = Course {
+            best: state.clone(),
+            recent: vec![self.merit(&state)],
+            state,
+            wants_exact: true,
+            short: SHORT * self.extent,
+            steps: 0,
+            factorisations: 0,
+        };
+        while course.steps < STEPS
+            && !course.state.residuals.are_within(tolerance, self.size)
+            && goes_on(&course.best.points, course.steps)
+            && on(pool, || self.advance(&mut course, points, tolerance, prepared))?
+        {}
+        let Course { best, steps, factorisations, .. } = course;
         let State { points, u, residuals, .. } = best;
         let capped = self.capped(&u);
         Ok(Finished { points, u, penalty: self.penalty, residuals, steps, factorisations, capped })
+    }
+
+    /// One step, and those with the same factor that follow. False if none helps. `points` are those at the beginning of the
+    /// run.
+    fn advance(
+        &mut self,
+        course: &mut Course,
+        points: &[DVec3],
+        tolerance: f64,
+        prepared: &mut Prepared,
+    ) -> Result<bool> {
+        let wants_exact = course.wants_exact;
+        let system =
+            self.system(&course.state, wants_exact, Differences::Forward, prepared, &mut course.factorisations)?;
+        let Some(system) = system else { return Ok(false) };
+        course.steps += 1;
+        let limit = course.recent.iter().rev().take(LOOKS_BACK).copied().fold(0.0, f64::max);
+        let Some(next) = self.step(&course.state, &system, prepared, limit) else { return Ok(false) };
+        let moves = next.points.iter().zip(&course.state.points).map(|(new, old)| new.distance(*old));
+        let moved = moves.fold(0.0, f64::max);
+        if wants_exact && !system.is_exact {
+            course.short = SHORTER * moved;
+        }
+        course.wants_exact = moved <= course.short;
+        let mut state = next;
+        let part = if system.is_exact { CHORD_EXACT } else { CHORD_CONVEX };
+        for _ in 0..CHORDS {
+            if state.residuals.are_within(tolerance, self.size) {
+                break;
+            }
+            let (_, whole) = self.solve(&system, prepared, &state.gradient, &state.excess, &state.u, ENOUGH_CHORD);
+            let next = self.moved(&state, &whole, 1.0);
+            // True for NaN.
+            if !(self.merit(&next) < part * self.merit(&state)) {
+                break;
+            }
+            state = next;
+        }
+        course.recent.push(self.merit(&state));
+        // What is no solution must not lead out of the model.
+        let farthest = state.points.iter().zip(points).map(|(new, old)| new.distance(*old)).fold(0.0, f64::max);
+        let is_inside = farthest <= self.size || state.residuals.are_within(tolerance, self.size);
+        if is_inside && self.merit(&state) < self.merit(&course.best) {
+            course.best = state.clone();
+        }
+        course.state = state;
+        Ok(true)
     }
 
     /// The number of constraints whose multiplier is at its cap.
@@ -268,7 +307,7 @@ impl Finish<'_> {
 
     /// One step: a state whose larger residual is below `limit`, or one further down the augmented Lagrangian, or none.
     fn step(&mut self, state: &State, system: &System, prepared: &mut Prepared, limit: f64) -> Option<State> {
-        let (first, whole) = self.solve(system, prepared, &state.gradient, &state.excess, &state.u, system.enough());
+        let (first, whole) = self.solve(system, prepared, &state.gradient, &state.excess, &state.u, ENOUGH_STEP);
         let moved = |from: &[DVec3], direction: &[DVec3], length: f64| -> Vec<DVec3> {
             from.iter().zip(direction).map(|(start, step)| *start + length * *step).collect()
         };
