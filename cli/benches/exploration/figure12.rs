@@ -1,7 +1,8 @@
 //! Fig. 12 of Deng et al. 2015: the distance from the solution over time, as `benches/peers/ipopt.py` tells it of IPOPT.
 //!
-//! Seconds go from the mesh in memory: edges, constraints, the symbolic and numeric factorisation and all sweeps are in
-//! them; what this program does to keep the points is not. One thread. The finish is seen at its end only.
+//! Seconds go from the mesh and the rows of its fairness in memory, as those of the peer do: constraints, handles, the
+//! symbolic and numeric factorisation and all sweeps are in them; what this program does to keep the points is not. One
+//! thread.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -20,8 +21,8 @@ use crate::session::{Session, largest_diagonal_distance};
 pub fn course(n: usize, reference: &Path) -> Result<Value> {
     let solution = points_of(reference)?;
     let mesh = translation_surface(n)?;
-    let started = Instant::now();
     let mut session = Session::new(&mesh, &Objective::default())?;
+    let started = Instant::now();
     session.solver.set_thread_count(1);
     let bound = 0.01 * session.edge;
     session.add("DiagonalDistance", &mesh.faces, &[bound], 1.0, true)?;
@@ -33,7 +34,7 @@ pub fn course(n: usize, reference: &Path) -> Result<Value> {
     let report = session.solver.solve_until(&SolveOptions::default(), &mut |now| {
         let entered = Instant::now();
         let seconds = (entered - started - own).as_secs_f64();
-        seen.push((now.iteration, seconds, now.solver.points().to_vec()));
+        seen.push((now.evaluations, seconds, now.solver.points().to_vec()));
         own += entered.elapsed();
         ControlFlow::Continue(())
     })?;

@@ -50,7 +50,7 @@ fn cases() -> Result<[Case; 3]> {
             soft: ("RegularPolygon", 0.3),
             held: &[],
             pull: (40, DVec3::new(0.0, 0.1, 0.6)),
-            step: 1e-3,
+            step: 4e-3,
         },
         Case {
             name: "hard edge lengths, soft planes",
@@ -69,7 +69,8 @@ impl Case {
     fn solution(&self, factors: [f64; 4]) -> Result<Session> {
         let weights = Objective::default();
         let objective = Objective {
-            handle_weight: factors[0] * weights.handle_weight,
+            // Heavy handles hardly answer to their weight.
+            handle_weight: factors[0] * 5.0,
             closeness_weight: factors[1] * weights.closeness_weight,
             fairness_weight: factors[2] * weights.fairness_weight,
             tolerance: 1e-14,
@@ -96,7 +97,7 @@ impl Case {
 pub fn group() -> Result<Group> {
     let mut group = Group::new(
         "sensitivities against central differences of solutions",
-        "d points / d ln weight over all points, relative, the worst class of weights. Surfaces of 7 × 7 and 9 × 9 points, a\n\
+        "d points / d ln weight over all points, relative, the worst class of weights; handles weigh 5. Surfaces of 7 × 7 and 9 × 9 points, a\n\
          tri-hex mesh of 4 × 4 hexagons.",
     );
     for case in cases()? {

@@ -13,29 +13,30 @@ use super::local::{Item, Local};
 use crate::linalg::positive_part::PositivePart;
 use crate::solver::parallel::for_parts;
 
-/// How derivatives are taken.
+/// How derivatives are taken: by differences from the point in hand to one side, away from the set, so that they stay
+/// on one side of the bound of a set of inequalities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Differences {
     /// To 1e-7 or so: enough for a step.
-    Forward,
+    Simple,
     /// To 1e-10 or so, at twice the projections: for an answer.
-    Central,
+    Extrapolated,
 }
 
 impl Differences {
     /// The step relative to a constraint's extent: the square and the cube root of the precision, nearly.
     fn step(self) -> f64 {
         match self {
-            Self::Forward => 1e-7,
-            Self::Central => 1e-5,
+            Self::Simple => 1e-7,
+            Self::Extrapolated => 1e-5,
         }
     }
 
-    /// Between which multiples of the step differences are taken.
-    fn ends(self) -> [f64; 2] {
+    /// At which multiples of the step, and the weights of the differences there.
+    fn multiples(self) -> &'static [(f64, f64)] {
         match self {
-            Self::Forward => [1.0, 0.0],
-            Self::Central => [1.0, -1.0],
+            Self::Simple => &[(1.0, 1.0)],
+            Self::Extrapolated => &[(1.0, 2.0), (2.0, -0.5)],
         }
     }
 }
@@ -72,57 +73,56 @@ impl Derivatives {
         let center = local.points.clone();
         local.project(is_parallel);
         let targets = local.targets.clone();
-        let ends = differences.ends();
+        // Rows and targets in hand, the targets those of the elastic set.
+        let (mut rows, mut base) = (vec![DVec3::ZERO; targets.len()], targets.clone());
+        for (i, item) in local.items.iter().enumerate() {
+            apply_rows(local, item, &center[item.points()], &mut rows[item.rows()]);
+            elastic(i, item, &rows[item.rows()], &mut base[item.rows()]);
+        }
         let step = |item: &Item| differences.step() * extent(&center[item.points()], size) / item.scale;
         let steps: Vec<f64> = local.items.iter().map(step).collect();
+        let outward = |i: usize, item: &Item, row: usize, axis: usize| {
+            let row = item.first_row + row;
+            if rows[row][axis] < targets[row][axis] { -steps[i] } else { steps[i] }
+        };
         let most = local.items.iter().map(|item| item.row_count).max().unwrap_or(0);
         let mut nothing = vec![(); bounds.len() - 1];
-        let mut plus = Vec::new();
-        for column in 0..3 * most {
+        for (column, &(multiple, weight)) in
+            (0..3 * most).flat_map(|column| differences.multiples().iter().map(move |multiple| (column, multiple)))
+        {
             let (row, axis) = (column / 3, column % 3);
-            for end in ends {
-                if end == 0.0 {
-                    local.targets.copy_from_slice(&targets);
-                    continue;
-                }
-                for (item, step) in local.items.iter().zip(&steps).filter(|(item, _)| row < item.row_count) {
-                    let mut unit = DVec3::ZERO;
-                    unit[axis] = end * step;
-                    for place in 0..item.point_count {
-                        local.points[item.first_point + place] =
-                            center[item.first_point + place] + local.lifted_row(item, place, row) * unit;
-                    }
-                }
-                local.project(is_parallel);
-                if end == ends[0] {
-                    plus.clone_from(&local.targets);
+            for (i, item) in local.items.iter().enumerate().filter(|(_, item)| row < item.row_count) {
+                let mut shift = DVec3::ZERO;
+                shift[axis] = multiple * outward(i, item, row, axis);
+                for place in 0..item.point_count {
+                    local.points[item.first_point + place] =
+                        center[item.first_point + place] + local.lifted_row(item, place, row) * shift;
                 }
             }
+            local.project(is_parallel);
             local.points.copy_from_slice(&center);
-            let (local, minus) = (&*local, &local.targets);
+            let local = &*local;
             let work = |chunk: usize, values: &mut [f64], (): &mut ()| {
-                let (mut rows, mut after, mut before) = (Vec::new(), Vec::new(), Vec::new());
+                let (mut moved, mut found) = (Vec::new(), Vec::new());
                 for i in local.item_bounds[chunk]..local.item_bounds[chunk + 1] {
                     let item = &local.items[i];
                     if row >= item.row_count {
                         continue;
                     }
-                    apply_rows(local, item, &center[item.points()], resized(&mut rows, item.row_count));
-                    after.clear();
-                    after.extend_from_slice(&plus[item.rows()]);
-                    before.clear();
-                    before.extend_from_slice(&minus[item.rows()]);
-                    let step = steps[i];
-                    for (by, targets) in [(ends[0] * step, &mut after), ((ends[1] - ends[0]) * step, &mut before)] {
-                        (0..item.row_count).for_each(|r| rows[r][axis] += by * local.image_of_row(item, r, row));
-                        elastic(i, item, &rows, targets);
+                    let step = outward(i, item, row, axis);
+                    moved.clear();
+                    moved.extend_from_slice(&rows[item.rows()]);
+                    for (r, moved) in moved.iter_mut().enumerate() {
+                        moved[axis] += multiple * step * local.image_of_row(item, r, row);
                     }
+                    found.clear();
+                    found.extend_from_slice(&local.targets[item.rows()]);
+                    elastic(i, item, &moved, &mut found);
                     let columns = 3 * item.row_count;
                     let own = &mut values[starts[i] - bounds[chunk]..][..columns * columns];
-                    for (r, (after, before)) in after.iter().zip(&before).enumerate() {
-                        let mut slope = (*before - *after) / ((ends[0] - ends[1]) * step);
-                        slope[axis] += local.image_of_row(item, r, row);
-                        (0..3).for_each(|b| own[(3 * r + b) * columns + column] = slope[b]);
+                    for (r, (found, base)) in found.iter().zip(&base[item.rows()]).enumerate() {
+                        let slope = weight / step * (*found - *base);
+                        (0..3).for_each(|b| own[(3 * r + b) * columns + column] -= slope[b]);
                     }
                 }
             };
@@ -131,10 +131,14 @@ impl Derivatives {
         local.targets = targets;
         let work = |chunk: usize, values: &mut [f64], (): &mut ()| {
             for i in local.item_bounds[chunk]..local.item_bounds[chunk + 1] {
-                make_symmetric(
-                    &mut values[starts[i] - bounds[chunk]..starts[i + 1] - bounds[chunk]],
-                    3 * local.items[i].row_count,
-                );
+                let own = &mut values[starts[i] - bounds[chunk]..starts[i + 1] - bounds[chunk]];
+                let item = &local.items[i];
+                let columns = 3 * item.row_count;
+                for k in 0..columns * item.row_count {
+                    let (r, s, b) = (k / columns, k % columns / 3, k % 3);
+                    own[(3 * r + b) * columns + 3 * s + b] += local.image_of_row(item, r, s);
+                }
+                make_symmetric(own, columns);
             }
         };
         for_parts(&bounds, &mut values, &mut nothing, is_parallel, &work);
@@ -204,12 +208,6 @@ impl Derivatives {
             }
         }
     }
-}
-
-fn resized(rows: &mut Vec<DVec3>, count: usize) -> &mut [DVec3] {
-    rows.clear();
-    rows.resize(count, DVec3::ZERO);
-    rows
 }
 
 fn make_symmetric(matrix: &mut [f64], size: usize) {

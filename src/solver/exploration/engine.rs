@@ -75,6 +75,8 @@ pub(super) struct Engine {
     pub(super) pool: Option<Arc<rayon::ThreadPool>>,
     /// Seconds that the last judgement of the points took: a time budget has to leave them.
     pub(super) judge_seconds: f64,
+    /// Seconds that the last Newton step took, for the same reason.
+    pub(super) step_seconds: f64,
 }
 
 /// What is counted from sweep to sweep, over any number of calls, until something changes that it depends on.
@@ -234,7 +236,12 @@ impl Engine {
                     let sweeps = found.sweeps;
                     let mut is_cancelled = false;
                     let largest_move = report.largest_move;
+                    let (mut step_seconds, mut last) = (self.step_seconds, Instant::now());
                     let mut goes_on = |points: &[DVec3], steps: u32| {
+                        if steps > 0 {
+                            step_seconds = last.elapsed().as_secs_f64();
+                        }
+                        last = Instant::now();
                         solver.points.copy_from_slice(points);
                         let now = Progress {
                             iteration: sweeps,
@@ -244,9 +251,12 @@ impl Engine {
                             solver,
                         };
                         is_cancelled = steps > 0 && progress(&now) == ControlFlow::Break(());
-                        !is_cancelled && !(has_budget && started.elapsed().as_secs_f64() >= sweeping_seconds)
+                        // A step that would not end in time is not begun.
+                        let end = started.elapsed().as_secs_f64() + step_seconds;
+                        !is_cancelled && !(has_budget && end >= sweeping_seconds)
                     };
                     self.finish(&mut found, &mut goes_on)?;
+                    self.step_seconds = step_seconds;
                     solver.points.copy_from_slice(&self.splitting.points);
                     // Forces on faces were held while the points moved.
                     let has_followed =

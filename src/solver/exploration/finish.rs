@@ -220,7 +220,7 @@ impl Finish<'_> {
     ) -> Result<bool> {
         let wants_exact = course.wants_exact;
         let system =
-            self.system(&course.state, wants_exact, Differences::Forward, prepared, &mut course.factorisations)?;
+            self.system(&course.state, wants_exact, Differences::Simple, prepared, &mut course.factorisations)?;
         let Some(system) = system else { return Ok(false) };
         course.steps += 1;
         let limit = course.recent.iter().rev().take(LOOKS_BACK).copied().fold(0.0, f64::max);
@@ -287,7 +287,7 @@ impl Finish<'_> {
             let reason = "the solution is no strict minimum: it does not say how it answers";
             Error::new(Status::InvalidValue, reason)
         };
-        let system = self.system(&state, true, Differences::Central, prepared, &mut 0)?;
+        let system = self.system(&state, true, Differences::Extrapolated, prepared, &mut 0)?;
         let system = system.filter(|system| system.is_exact).ok_or_else(indefinite)?;
         let none = vec![DVec3::ZERO; state.u.len()];
         let answer = |gradient: &Vec<DVec3>| {

@@ -336,6 +336,7 @@ impl Explorer {
             course: Course::default(),
             pool: None,
             judge_seconds: 0.0,
+            step_seconds: 0.0,
         })
     }
 }
