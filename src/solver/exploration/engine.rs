@@ -253,7 +253,7 @@ impl Engine {
                         is_cancelled = steps > 0 && progress(&now) == ControlFlow::Break(());
                         // A step that would not end in time is not begun.
                         let end = started.elapsed().as_secs_f64() + step_seconds;
-                        !is_cancelled && !(has_budget && end >= sweeping_seconds)
+                        !(is_cancelled || has_budget && end >= sweeping_seconds)
                     };
                     self.finish(&mut found, &mut goes_on)?;
                     self.step_seconds = step_seconds;

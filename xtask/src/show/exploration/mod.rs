@@ -22,7 +22,7 @@ const CONTRADICTIONS: usize = 10;
 const SWEEPS: f64 = 300.0;
 
 /// Of coordinates, in sizes of the model.
-const BOUND: f64 = 3.0;
+const BOUND: f64 = 4.0;
 
 pub fn show(figures: &mut Figures) -> Result<()> {
     let program = Program(measure::build("exploration", "release")?);
@@ -80,14 +80,10 @@ fn projections(figures: &mut Figures) -> Result<()> {
 
 fn contradictions(figures: &mut Figures) -> Result<()> {
     figures.group("contradictions: planted sets named, iterates bounded; problems without any");
-    if !shell::root().join("tests/contradictions.rs").is_file() {
-        figures.not_measured("planted sets named exactly", &CONTRADICTIONS.to_string());
-        figures.not_measured("problems without conflict", &CONTRADICTIONS.to_string());
-        return Ok(());
-    }
     let text = test_output(&["--test", "contradictions"])?;
-    let (mut named, mut sweeps, mut farthest) = (0, 0.0_f64, 0.0_f64);
+    let (mut planted_count, mut named, mut sweeps, mut farthest) = (0_u32, 0, 0.0_f64, 0.0_f64);
     for words in lines_with(&text, "infeasible ") {
+        planted_count += 1;
         figures.says(&words.join(" "));
         if let [
             ..,
@@ -109,7 +105,8 @@ fn contradictions(figures: &mut Figures) -> Result<()> {
             farthest = farthest.max(size.parse()?);
         }
     }
-    figures.exactly("planted sets named exactly", named, CONTRADICTIONS);
+    figures.at_least("problems with a planted set", f64::from(planted_count), CONTRADICTIONS as f64);
+    figures.exactly("planted sets named exactly", named, planted_count as usize);
     figures.at_most("sweeps until the last was named", sweeps, SWEEPS);
     figures.at_most("largest coordinate over the model's size", farthest, BOUND);
     let (mut calm, mut worst) = (0, 0.0_f64);
