@@ -8,8 +8,9 @@ use std::time::Instant;
 use glam::DVec3;
 
 use super::conflicts::{Priorities, Suspicion};
-use super::finish::{self, Finish, Finished, Kept, Residuals};
+use super::finish::{self, Finish, Finished, Residuals};
 use super::local::{self, Local};
+use super::newton::Kept;
 use super::quadratic::ObjectiveTerms;
 use super::search::Search;
 use super::splitting::{Splitting, Sweep};

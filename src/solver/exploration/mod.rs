@@ -16,6 +16,7 @@ mod derivatives;
 mod engine;
 mod finish;
 mod local;
+mod newton;
 mod quadratic;
 mod search;
 mod sensitivity;
@@ -28,7 +29,7 @@ use glam::DVec3;
 
 use self::conflicts::Priorities;
 use self::engine::{Course, Engine, Memory, distances, extent};
-use self::finish::Kept;
+use self::newton::Kept;
 use self::quadratic::Quadratic;
 use self::splitting::Splitting;
 use super::{ProgressFn, Report, SolveOptions, Solver};
