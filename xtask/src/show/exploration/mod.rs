@@ -107,7 +107,7 @@ fn contradictions(figures: &mut Figures) -> Result<()> {
     }
     figures.at_least("problems with a planted set", f64::from(planted_count), CONTRADICTIONS as f64);
     figures.exactly("planted sets named exactly", named, planted_count as usize);
-    figures.at_most("sweeps until the last was named", sweeps, SWEEPS);
+    figures.at_most("sweeps until the last was recognised", sweeps, SWEEPS);
     figures.at_most("largest coordinate over the model's size", farthest, BOUND);
     let (mut calm, mut worst) = (0, 0.0_f64);
     for words in lines_with(&text, "feasible ") {
