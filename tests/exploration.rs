@@ -344,3 +344,22 @@ fn any_number_of_threads_gives_the_same_bits() {
         assert!(run(thread_count) == one, "{thread_count} threads");
     }
 }
+
+#[test]
+fn newton_steps_are_reported_and_can_be_cancelled() {
+    let (mut solver, _) = figure_12(11);
+    let mut seen: Vec<[u32; 2]> = Vec::new();
+    let report = solver.solve_until(&SolveOptions::default(), &mut |now| {
+        seen.push([now.iteration, now.evaluations]);
+        ControlFlow::Continue(())
+    });
+    assert_eq!(report.unwrap().outcome, Outcome::Converged);
+    assert!(seen.iter().any(|[iteration, evaluations]| evaluations > iteration), "no Newton step was seen");
+    assert!(seen.windows(2).all(|pair| pair[0][1] < pair[1][1]), "evaluations do not grow: {seen:?}");
+    let (mut solver, _) = figure_12(11);
+    let report = solver.solve_until(&SolveOptions::default(), &mut |now| {
+        if now.evaluations > now.iteration { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!(report.unwrap().outcome, Outcome::Cancelled);
+    assert!(!solver.found().unwrap().is_solution);
+}

@@ -54,9 +54,8 @@ pub(super) struct Derivatives {
 }
 
 impl Derivatives {
-    /// Those at the points where `local` last was placed, `rows` being the constraints' rows there. `elastic` takes the
-    /// targets to those of the elastic set, see [`super::splitting`]; it is given a constraint, its rows and its
-    /// targets.
+    /// Those at the points where `local` last was placed. `elastic` takes targets to those of the elastic set, see
+    /// [`super::splitting`]; it is given a constraint, its rows and its targets. `size` is the model's, in its units.
     pub(super) fn new(
         local: &mut Local,
         size: f64,

@@ -87,6 +87,7 @@ pub(super) struct Course {
     settled: u32,
     /// The number of sweeps from which on a finish is tried again.
     next_finish: u32,
+    /// Finishes since the last that succeeded.
     finishes: usize,
     /// The least residual, and sweeps since it fell.
     least: f64,
@@ -234,7 +235,7 @@ impl Engine {
             } else {
                 self.course.see(&sweep);
                 if wants_finish && !is_dragged && self.is_time_to_finish(&sweep) {
-                    let sweeps = found.sweeps;
+                    let (sweeps, steps_before) = (found.sweeps, found.newton_steps);
                     let mut is_cancelled = false;
                     let largest_move = report.largest_move;
                     let (mut step_seconds, mut last) = (self.step_seconds, Instant::now());
@@ -246,7 +247,7 @@ impl Engine {
                         solver.points.copy_from_slice(points);
                         let now = Progress {
                             iteration: sweeps,
-                            evaluations: sweeps + steps,
+                            evaluations: sweeps + steps_before + steps,
                             energy: sweep.residual,
                             largest_move,
                             solver,

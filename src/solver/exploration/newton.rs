@@ -36,6 +36,7 @@ pub(super) struct Kept {
     prepared: Option<Prepared>,
 }
 
+/// The matrix in its pattern, with its factor and the places of what is added to it.
 pub(super) struct Prepared {
     matrix: SymmetricMatrix,
     factor: Factor,
