@@ -91,7 +91,7 @@ impl Accelerator {
             Method::QuasiNewton(_) => QUASI_NEWTON_MEMORY,
         };
         let capacity = if memory == 0 { default } else { memory } as usize;
-        self.history.reset(capacity, point_count, true);
+        self.history.reset(capacity, point_count);
         self.combination.reset(capacity);
         match &mut self.method {
             Method::Anderson(anderson) => anderson.reset(capacity),
@@ -120,7 +120,7 @@ impl Accelerator {
         is_parallel: bool,
     ) -> bool {
         self.start.copy_from_slice(points);
-        self.history.push(points, plain, image, is_parallel);
+        self.history.push(points, plain, Some(image), is_parallel);
         match &mut self.method {
             Method::Anderson(anderson) => {
                 let left_out = anderson.combine(&self.history, &mut self.combination);

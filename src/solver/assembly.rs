@@ -20,6 +20,7 @@ const LONGEST_DENSE_STENCIL: usize = 12;
 const CHUNK_POINTS: usize = 256;
 
 /// `Aᵀ` by rows: the right-hand side of each point as a sum over targets, in a fixed order.
+#[derive(Default)]
 pub(super) struct Gather {
     starts: Vec<usize>,
     /// The target of each entry.

@@ -12,12 +12,16 @@
 use glam::DVec3;
 
 use super::parallel::for_parts;
+use crate::linalg::simd::{Kernel, dispatch, mul_add};
 
-/// Points of a chunk. Its pairs fit a core's second cache, and its vectors are many times as long as the sums.
+/// Points of a chunk at most. Its pairs fit a core's second cache, and its vectors are many times as long as the sums.
 const CHUNK_POINTS: usize = 512;
 
-/// Numbers of one vector in a chunk; those beyond the last point are 0.
-const WIDTH: usize = 3 * CHUNK_POINTS;
+/// Points of a chunk are a multiple of this, so that [`Dots`] takes vectors whole.
+const STEP_POINTS: usize = 16;
+
+/// Numbers of one vector in a chunk at most; those beyond the last point are 0.
+const MOST_WIDTH: usize = 3 * CHUNK_POINTS;
 
 /// Vectors at the beginning of a chunk: `x`, `f` and `N f` of the last iterate.
 const LAST: usize = 3;
@@ -30,14 +34,17 @@ const PRODUCTS: usize = 4;
 pub(super) struct History {
     /// Pairs at most.
     capacity: usize,
-    /// True if products with moves are computed.
-    has_moves: bool,
+    /// True if `N` is the identity and moves are taken with the coefficient of the change alone: `s_i + d_i` lies in the
+    /// place of `s_i` then, which is the change of `G(x)`, and there are no products with it.
+    is_euclidean: bool,
     /// Pairs held.
     length: usize,
     /// The place of the newest pair.
     newest: usize,
     /// True once there is an iterate for the next to differ from.
     is_started: bool,
+    /// Numbers of one vector in a chunk.
+    width: usize,
     /// Every chunk's numbers, one chunk after the other, and the pairs and points they are laid out for.
     data: Vec<f64>,
     layout: (usize, usize),
@@ -77,16 +84,18 @@ impl Combination {
 }
 
 impl History {
-    /// Forgets everything, and has room for `capacity` pairs (at least 1) of `point_count` points from now on. Products
-    /// with moves are computed if `has_moves`.
-    pub(super) fn reset(&mut self, capacity: usize, point_count: usize, has_moves: bool) {
+    /// Forgets everything, and has room for `capacity` pairs (at least 1) of `point_count` points from now on.
+    pub(super) fn reset(&mut self, capacity: usize, point_count: usize) {
         (self.capacity, self.length, self.newest, self.is_started) = (capacity, 0, 0, false);
-        self.has_moves = has_moves;
+        // Chunks of about the same length: a short one would take as much memory as the others.
+        let even = point_count.div_ceil(point_count.div_ceil(CHUNK_POINTS).max(1));
+        let chunk_points = even.next_multiple_of(STEP_POINTS).max(STEP_POINTS);
+        self.width = 3 * chunk_points;
         self.point_bounds.clear();
-        self.point_bounds.extend((0..point_count).step_by(CHUNK_POINTS));
+        self.point_bounds.extend((0..point_count).step_by(chunk_points));
         let chunk_count = self.point_bounds.len();
         self.point_bounds.push(point_count);
-        let size = (LAST + 2 * capacity) * WIDTH + PRODUCTS * capacity + 1;
+        let size = (LAST + 2 * capacity) * self.width + PRODUCTS * capacity + 1;
         self.data_bounds.clear();
         self.data_bounds.extend((0..=chunk_count).map(|chunk| chunk * size));
         // With the same layout, what lies beyond the last point is 0 already; all else is written before it is read.
@@ -121,8 +130,11 @@ impl History {
         self.length
     }
 
-    /// Adds the iterate `points`, the plain step's result `plain = G(points)`, and `image = N (plain − points)`.
-    pub(super) fn push(&mut self, points: &[DVec3], plain: &[DVec3], image: &[DVec3], is_parallel: bool) {
+    /// Adds the iterate `points`, the plain step's result `plain = G(points)`, and `image = N (plain − points)`; `None`
+    /// for all iterates where `N` is the identity and only [`super::anderson`] combines them.
+    pub(super) fn push(&mut self, points: &[DVec3], plain: &[DVec3], image: Option<&[DVec3]>, is_parallel: bool) {
+        let is_euclidean = image.is_none();
+        self.is_euclidean = is_euclidean;
         let is_pair = self.is_started;
         if is_pair {
             self.newest = (self.newest + 1) % self.capacity;
@@ -130,41 +142,50 @@ impl History {
         }
         self.is_started = true;
         let (capacity, newest, length) = (self.capacity, self.newest, self.length);
-        let (bounds, has_moves) = (&self.point_bounds, self.has_moves);
+        let (bounds, width) = (&self.point_bounds, self.width);
         let work = |chunk: usize, data: &mut [f64], _: &mut f64| {
             let range = bounds[chunk]..bounds[chunk + 1];
-            let (points, plain, image) = (&points[range.clone()], &plain[range.clone()], &image[range]);
-            let (last, rest) = data.split_at_mut(LAST * WIDTH);
-            let (pairs, products) = rest.split_at_mut(2 * capacity * WIDTH);
-            let mut new_image_change = [0.0; WIDTH];
-            let (last_point, last_steps) = last.split_at_mut(WIDTH);
-            let (last_plain, last_image) = last_steps.split_at_mut(WIDTH);
-            let (new_move, new_change) = pairs[2 * newest * WIDTH..][..2 * WIDTH].split_at_mut(WIDTH);
-            for (i, ((x, g), image)) in points.iter().zip(plain).zip(image).enumerate() {
-                let (x, f, image) = (x.to_array(), (*g - *x).to_array(), image.to_array());
+            let (points, plain) = (&points[range.clone()], &plain[range.clone()]);
+            let (last, rest) = data.split_at_mut(LAST * width);
+            let (pairs, products) = rest.split_at_mut(2 * capacity * width);
+            let (last_point, last_steps) = last.split_at_mut(width);
+            let (last_plain, last_image) = last_steps.split_at_mut(width);
+            let mut new_image_change = [0.0; MOST_WIDTH];
+            let new_image_change = &mut new_image_change[..width];
+            let (new_move, new_change) = pairs[2 * newest * width..][..2 * width].split_at_mut(width);
+            for (i, (x, g)) in points.iter().zip(plain).enumerate() {
+                let (f, x) = ((*g - *x).to_array(), if is_euclidean { *g } else { *x }.to_array());
                 for axis in 0..3 {
                     let k = 3 * i + axis;
                     if is_pair {
                         new_move[k] = x[axis] - last_point[k];
                         new_change[k] = f[axis] - last_plain[k];
-                        new_image_change[k] = image[axis] - last_image[k];
                     }
-                    (last_point[k], last_plain[k], last_image[k]) = (x[axis], f[axis], image[axis]);
+                    (last_point[k], last_plain[k]) = (x[axis], f[axis]);
                 }
             }
-            for age in 0..length {
-                let place = (newest + capacity - age) % capacity;
-                let (s, d) = pairs[2 * place * WIDTH..][..2 * WIDTH].split_at(WIDTH);
+            let (step, step_change) = match image {
+                None => (&*last_plain, &pairs[(2 * newest + 1) * width..][..width]),
+                Some(image) => {
+                    let image = image[range].iter().flat_map(|image| image.to_array());
+                    for ((image, last), change) in image.zip(&mut *last_image).zip(&mut *new_image_change) {
+                        (*change, *last) = (image - *last, image);
+                    }
+                    (&*last_image, &*new_image_change)
+                }
+            };
+            for place in (0..length).map(|age| (newest + capacity - age) % capacity) {
+                let (s, d) = pairs[2 * place * width..][..2 * width].split_at(width);
                 let products = &mut products[PRODUCTS * place..][..PRODUCTS];
-                (products[1], products[3]) = (dot(d, last_image), dot(d, &new_image_change));
-                if has_moves {
-                    (products[0], products[2]) = (dot(s, last_image), dot(s, &new_image_change));
+                [products[1], products[3]] = dispatch(Dots { a: d, with: [step, step_change] });
+                if !is_euclidean {
+                    [products[0], products[2]] = dispatch(Dots { a: s, with: [step, step_change] });
                 }
             }
-            products[PRODUCTS * capacity] = dot(last_plain, last_image);
+            [products[PRODUCTS * capacity]] = dispatch(Dots { a: last_plain, with: [step] });
         };
         for_parts(&self.data_bounds, &mut self.data, &mut self.results, is_parallel, &work);
-        let first = (LAST + 2 * capacity) * WIDTH;
+        let first = (LAST + 2 * capacity) * width;
         let (data, starts) = (&self.data, &self.data_bounds[..self.results.len()]);
         let total = |product: usize| starts.iter().map(|start| data[start + first + product]).sum::<f64>();
         self.plain_plain = total(PRODUCTS * capacity);
@@ -181,19 +202,19 @@ impl History {
     /// Writes the direction that `combination` describes, one entry per point.
     pub(super) fn combine(&mut self, combination: &Combination, direction: &mut [DVec3], is_parallel: bool) {
         let (capacity, newest, length) = (self.capacity, self.newest, self.length);
-        let (data, bounds) = (&self.data, &self.data_bounds);
+        let (data, bounds, width) = (&self.data, &self.data_bounds, self.width);
+        let is_euclidean = self.is_euclidean;
         let work = |chunk: usize, direction: &mut [DVec3], _: &mut f64| {
             let data = &data[bounds[chunk]..bounds[chunk + 1]];
-            let mut sum = [0.0; WIDTH];
-            for (sum, f) in sum.iter_mut().zip(&data[WIDTH..2 * WIDTH]) {
-                *sum = combination.plain * f;
-            }
+            let mut sum = [0.0; MOST_WIDTH];
+            let sum = &mut sum[..width];
+            sum.iter_mut().zip(&data[width..]).for_each(|(sum, f)| *sum = combination.plain * f);
             for age in 0..length {
                 let place = (newest + capacity - age) % capacity;
-                let (s, d) = data[(LAST + 2 * place) * WIDTH..][..2 * WIDTH].split_at(WIDTH);
-                let (a, b) = (combination.moves[age], combination.changes[age]);
-                for ((sum, s), d) in sum.iter_mut().zip(s).zip(d) {
-                    *sum += a * s + b * d;
+                let (s, d) = data[(LAST + 2 * place) * width..][..2 * width].split_at(width);
+                dispatch(AddScaled { sum, factor: combination.moves[age], vector: s });
+                if !is_euclidean {
+                    dispatch(AddScaled { sum, factor: combination.changes[age], vector: d });
                 }
             }
             for (direction, sum) in direction.iter_mut().zip(sum.chunks_exact(3)) {
@@ -201,6 +222,11 @@ impl History {
             }
         };
         for_parts(&self.point_bounds, direction, &mut self.results, is_parallel, &work);
+    }
+
+    /// `‖f‖²`.
+    pub(super) fn plain_squared(&self) -> f64 {
+        self.plain_plain
     }
 
     /// `⟨f, p⟩`, `p` being the direction that `combination` describes.
@@ -236,15 +262,50 @@ impl History {
     }
 }
 
-/// `aᵀ b` of two vectors of a chunk, in eight sums that do not wait for each other.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    for (a, b) in a.chunks_exact(8).zip(b.chunks_exact(8)) {
-        for i in 0..8 {
-            sums[i] += a[i] * b[i];
+/// `aᵀ b` for one vector of a chunk with others, each in so many sums that they do not wait for each other.
+struct Dots<'a, const N: usize> {
+    a: &'a [f64],
+    with: [&'a [f64]; N],
+}
+
+const SUMS: usize = 16;
+
+impl<const N: usize> Kernel for Dots<'_, N> {
+    type Output = [f64; N];
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) -> [f64; N] {
+        let mut sums = [[0.0; SUMS]; N];
+        let (a, _) = self.a.as_chunks::<SUMS>();
+        let with = self.with.map(|b| b.as_chunks::<SUMS>().0);
+        for (k, a) in a.iter().enumerate() {
+            for (sums, b) in sums.iter_mut().zip(with) {
+                let b = &b[k];
+                for i in 0..SUMS {
+                    sums[i] = mul_add::<FMA>(a[i], b[i], sums[i]);
+                }
+            }
+        }
+        sums.map(|sums| sums.iter().sum())
+    }
+}
+
+/// Adds a multiple of one vector of a chunk to another.
+struct AddScaled<'a> {
+    sum: &'a mut [f64],
+    factor: f64,
+    vector: &'a [f64],
+}
+
+impl Kernel for AddScaled<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FMA: bool>(self) {
+        for (sum, x) in self.sum.iter_mut().zip(self.vector) {
+            *sum = mul_add::<FMA>(self.factor, *x, *sum);
         }
     }
-    sums.iter().sum()
 }
 
 #[cfg(test)]
@@ -268,9 +329,9 @@ mod tests {
         let (n, capacity) = (2 * CHUNK_POINTS + 3, 3);
         let iterates: Vec<_> = (0..6).map(|k| iterate(n, k)).collect();
         let mut history = History::default();
-        history.reset(capacity, n, true);
+        history.reset(capacity, n);
         for [points, plain, image] in &iterates {
-            history.push(points, plain, image, false);
+            history.push(points, plain, Some(image), false);
         }
         assert_eq!(history.len(), capacity);
         let step = |k: usize, i: usize| iterates[k][1][i] - iterates[k][0][i];
@@ -312,10 +373,10 @@ mod tests {
         let n = 9 * CHUNK_POINTS + 100;
         let run = |is_parallel: bool| {
             let (mut history, mut combination) = (History::default(), Combination::default());
-            history.reset(4, n, true);
+            history.reset(4, n);
             for k in 0..6 {
                 let [points, plain, image] = iterate(n, k);
-                history.push(&points, &plain, &image, is_parallel);
+                history.push(&points, &plain, Some(&image), is_parallel);
             }
             combination.reset(4);
             combination.moves.fill(0.3);

@@ -19,6 +19,7 @@ pub struct Session {
     pub solver: Solver,
     pub start: Mesh,
     pub edges: Vec<[u32; 2]>,
+    boundary: Vec<u32>,
     /// The mean edge of the start.
     pub edge: f64,
 }
@@ -42,13 +43,15 @@ impl Session {
     pub fn new(start: &Mesh, objective: &Objective) -> Result<Self> {
         let mut solver = Solver::new();
         solver.set_points(&start.points)?;
-        let edges = Topology::new(start)?.edges().to_vec();
+        let topology = Topology::new(start)?;
+        let edges = topology.edges().to_vec();
+        let boundary = (0..).zip(topology.boundary_points()).filter_map(|(i, is_on)| is_on.then_some(i)).collect();
         let rows = match objective.fairness {
             Fairness::Laplacian => FairnessRows::laplacian(start.points.len(), &edges),
             kind => FairnessRows::differences(&shapeop::mesh::polylines(start)?, kind),
         };
         solver.set_objective(objective, rows)?;
-        let mut session = Self { solver, start: start.clone(), edges, edge: 1.0 };
+        let mut session = Self { solver, start: start.clone(), edges, boundary, edge: 1.0 };
         session.edge = session.lengths().iter().sum::<f64>() / session.edges.len() as f64;
         Ok(session)
     }
@@ -103,9 +106,7 @@ impl Session {
 
     /// Makes the boundary points handles where they are.
     pub fn hold_boundary(&mut self) -> Result<()> {
-        let is_on = Topology::new(&self.start)?.boundary_points();
-        let boundary = (0..).zip(is_on).filter(|(_, is_on)| *is_on);
-        Ok(boundary.into_iter().try_for_each(|(i, _)| self.solver.set_handle(i, self.start.points[i as usize]))?)
+        Ok(self.boundary.iter().try_for_each(|i| self.solver.set_handle(*i, self.start.points[*i as usize]))?)
     }
 
     /// Draws a point to where it was at the start plus so many mean edges.

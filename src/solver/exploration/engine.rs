@@ -172,6 +172,9 @@ impl Memory {
     /// Gives a new splitting the multipliers of the constraints that were there before, none beyond its cap: what they
     /// were balanced with may be gone.
     pub(super) fn give(&self, splitting: &mut Splitting) {
+        if self.multipliers.is_empty() {
+            return;
+        }
         let mut all = vec![DVec3::ZERO; splitting.rows.len()];
         for (item, cap) in splitting.hard.items.iter().zip(&splitting.caps) {
             if let Some(known) = self.multipliers.get(&item.id).filter(|known| known.len() == item.row_count) {

@@ -81,7 +81,7 @@ impl Local {
             coefficients: Vec::new(),
             point_bounds: vec![0],
             item_bounds: vec![0],
-            gather: Gather::new(set, &[], &[], &[], point_count),
+            gather: Gather::default(),
             stiffness: Vec::new(),
             points: vec![DVec3::ZERO; own_count],
             targets: vec![DVec3::ZERO; row_bounds[chunks.len()]],

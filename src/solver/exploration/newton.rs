@@ -289,7 +289,6 @@ struct Krylov {
     history: History,
     anderson: Anderson,
     combination: Combination,
-    step: Vec<DVec3>,
     direction: Vec<DVec3>,
 }
 
@@ -297,19 +296,15 @@ impl Krylov {
     fn new(row_count: usize) -> Self {
         let (mut history, mut anderson, mut combination) =
             (History::default(), Anderson::default(), Combination::default());
-        history.reset(KRYLOV_MEMORY, row_count, false);
+        history.reset(KRYLOV_MEMORY, row_count);
         anderson.reset(KRYLOV_MEMORY);
         combination.reset(KRYLOV_MEMORY);
-        let vector = || vec![DVec3::ZERO; row_count];
-        Self { history, anderson, combination, step: vector(), direction: vector() }
+        Self { history, anderson, combination, direction: vec![DVec3::ZERO; row_count] }
     }
 
     /// Replaces `multipliers`, whose plain update is `next`.
     fn advance(&mut self, multipliers: &mut [DVec3], next: &[DVec3], is_parallel: bool) {
-        for ((step, next), old) in self.step.iter_mut().zip(next).zip(&*multipliers) {
-            *step = *next - *old;
-        }
-        self.history.push(multipliers, next, &self.step, is_parallel);
+        self.history.push(multipliers, next, None, is_parallel);
         if self.history.len() == 0 {
             multipliers.copy_from_slice(next);
             return;

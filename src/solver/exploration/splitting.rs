@@ -102,8 +102,6 @@ struct Accelerated {
     history: History,
     anderson: Anderson,
     combination: Combination,
-    direction: Vec<DVec3>,
-    step: Vec<DVec3>,
     /// The plain step from the last sweep that was accepted, and the residual there.
     plain: Vec<DVec3>,
     residual: f64,
@@ -169,11 +167,9 @@ impl Splitting {
         self.quadratic.right_hand_side(&mut self.constant[..n]);
     }
 
-    /// Rows at the projections of the points as they are, multipliers zero.
+    /// Rows where the points as they are have them: multipliers zero.
     pub(super) fn restart(&mut self) {
-        let (hard, points) = (&mut self.hard, &self.points);
-        hard.place(points, &mut self.images, |_, _, _| {}, false);
-        hard.project(false);
+        self.hard.place(&self.points, &mut self.images, |_, _, _| {}, false);
         self.rows.copy_from_slice(&self.images);
         self.forget();
     }
@@ -219,7 +215,7 @@ impl Splitting {
         let largest_move = self.solve(is_parallel);
         let mut sweep = self.project(is_parallel);
         sweep.largest_move = largest_move;
-        self.accelerated.advance(&mut self.rows, &self.next, sweep.residual, is_parallel);
+        self.accelerated.advance(&mut self.rows, &mut self.next, sweep.residual, is_parallel);
         sweep
     }
 
@@ -231,8 +227,8 @@ impl Splitting {
             self.soft.project(is_parallel);
         }
         self.right_hand_side.copy_from_slice(&self.constant);
-        for (targets, local, factor) in [(&self.soft.targets, &self.soft, 1.0), (&self.rows, &self.hard, self.penalty)]
-        {
+        let parts = [(&self.soft.targets, &self.soft, 1.0), (&self.rows, &self.hard, self.penalty)];
+        for (targets, local, factor) in parts.into_iter().filter(|(_, local, _)| !local.items.is_empty()) {
             let bounds = &self.point_bounds;
             let sum = |chunk: usize, sums: &mut [DVec3], (): &mut ()| local.gather.sum(bounds[chunk], targets, sums);
             for_parts(bounds, &mut self.sums, &mut vec![(); bounds.len() - 1], is_parallel, &sum);
@@ -264,8 +260,9 @@ impl Splitting {
             let items = &hard.items[hard.item_bounds[chunk]..hard.item_bounds[chunk + 1]];
             for ((i, item), was_active) in (hard.item_bounds[chunk]..).zip(items).zip(&mut share.is_active) {
                 let (images, rows, targets) = (&images[item.rows()], &rows[item.rows()], &hard.targets[item.rows()]);
-                let reflected = |r: usize| 2.0 * images[r] - rows[r];
-                let squared: f64 = (0..item.row_count).map(|r| reflected(r).distance_squared(targets[r])).sum();
+                let reflected = |image: &DVec3, row: &DVec3| 2.0 * *image - *row;
+                let both = images.iter().zip(rows);
+                let squared: f64 = both.zip(targets).map(|((a, s), t)| reflected(a, s).distance_squared(*t)).sum();
                 let distance = item.scale * squared.sqrt();
                 let reach = caps[i] / penalty;
                 let part = if distance > reach { reach / distance } else { 1.0 };
@@ -275,11 +272,11 @@ impl Splitting {
                 *was_active = is_active;
                 let mut gap = 0.0;
                 let next = &mut next[item.first_row - hard.row_bounds[chunk]..][..item.row_count];
-                for (r, next) in next.iter_mut().enumerate() {
-                    let w = reflected(r);
-                    let step = w + part * (targets[r] - w) - images[r];
+                for (((next, image), row), target) in next.iter_mut().zip(images).zip(rows).zip(targets) {
+                    let w = reflected(image, row);
+                    let step = w + part * (*target - w) - *image;
                     gap += step.length_squared();
-                    *next = rows[r] + RELAXATION * step;
+                    *next = *row + RELAXATION * step;
                 }
                 let gap = item.scale * item.scale * gap;
                 share.squares += gap;
@@ -316,46 +313,51 @@ impl Share {
 
 impl Accelerated {
     fn reset(&mut self, row_count: usize) {
-        self.history.reset(MEMORY, row_count, false);
+        self.history.reset(MEMORY, row_count);
         self.anderson.reset(MEMORY);
         self.combination.reset(MEMORY);
-        self.direction.resize(row_count, DVec3::ZERO);
-        self.step.resize(row_count, DVec3::ZERO);
+        self.plain.resize(row_count, DVec3::ZERO);
         (self.residual, self.is_trial) = (f64::INFINITY, false);
     }
 
     /// Replaces `rows`, whose plain step leads to `next` and leaves `residual`: by an accelerated step, or by the plain
-    /// one. A trial that raised the residual is taken back to the plain step from where it began.
-    fn advance(&mut self, rows: &mut [DVec3], next: &[DVec3], residual: f64, is_parallel: bool) {
+    /// one. A trial that raised the residual is taken back to the plain step from where it began. `next` is of no meaning
+    /// afterwards.
+    fn advance(&mut self, rows: &mut [DVec3], next: &mut Vec<DVec3>, residual: f64, is_parallel: bool) {
         // False for NaN.
         if self.is_trial && !(residual < self.residual) {
             rows.copy_from_slice(&self.plain);
-            let count = rows.len();
-            self.reset(count);
+            self.reset(rows.len());
             return;
         }
         self.residual = residual;
-        for ((step, next), row) in self.step.iter_mut().zip(next).zip(&*rows) {
-            *step = *next - *row;
-        }
-        self.history.push(rows, next, &self.step, is_parallel);
-        self.plain.clear();
-        self.plain.extend_from_slice(next);
+        self.history.push(rows, next, None, is_parallel);
+        std::mem::swap(&mut self.plain, next);
         self.is_trial = self.history.len() > 0;
         if !self.is_trial {
-            rows.copy_from_slice(next);
+            rows.copy_from_slice(&self.plain);
             return;
         }
         self.anderson.combine(&self.history, &mut self.combination);
-        self.history.combine(&self.combination, &mut self.direction, is_parallel);
-        let length = |steps: &[DVec3]| steps.iter().map(|step| step.length_squared()).sum::<f64>().sqrt();
+        // What was the plain step before is no longer needed.
+        let direction = next;
+        self.history.combine(&self.combination, direction, is_parallel);
         // False for NaN.
-        if !(length(&self.direction) <= FARTHEST * length(&self.step)) {
-            rows.copy_from_slice(next);
+        if !(squared_length(direction) <= FARTHEST * FARTHEST * self.history.plain_squared()) {
+            rows.copy_from_slice(&self.plain);
             return;
         }
-        rows.iter_mut().zip(&self.direction).for_each(|(row, step)| *row += *step);
+        rows.iter_mut().zip(&*direction).for_each(|(row, step)| *row += *step);
     }
+}
+
+/// `Σ ‖v‖²`, in four sums that do not wait for each other.
+fn squared_length(vectors: &[DVec3]) -> f64 {
+    let mut sums = [0.0; 4];
+    for four in vectors.chunks(4) {
+        sums.iter_mut().zip(four).for_each(|(sum, vector)| *sum += vector.length_squared());
+    }
+    sums.iter().sum()
 }
 
 /// What the matrix is made of.
