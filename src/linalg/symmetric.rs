@@ -34,43 +34,51 @@ impl Pattern {
     /// # Errors
     /// Status `TooLarge` where 32-bit indices do not suffice.
     fn new(dimension: usize, visit: impl Fn(&mut dyn FnMut(u32, u32))) -> Result<Self> {
-        let mut counts = vec![1_usize; dimension];
-        visit(&mut |i, j| counts[i.min(j) as usize] += usize::from(i != j));
-        let mut next: Vec<usize> = Vec::with_capacity(dimension);
-        let mut total = 0_usize;
-        for &count in &counts {
-            next.push(total);
-            total += count;
+        // Columns of the entries below the diagonal, row by row; repeated ones are in there as often as they come.
+        let mut row_starts = vec![0_usize; dimension + 1];
+        visit(&mut |i, j| row_starts[i.max(j) as usize + 1] += usize::from(i != j));
+        for i in 0..dimension {
+            row_starts[i + 1] += row_starts[i];
         }
-        if u32::try_from(total).is_err() || u32::try_from(dimension).is_err() {
+        let total = row_starts[dimension] + dimension;
+        if u32::try_from(total).is_err() {
             return Err(Error::new(Status::TooLarge, format!("{total} matrix entries exceed 32-bit indices")));
         }
-        let mut rows = vec![0_u32; total];
-        let starts = next.clone();
-        for (j, place) in next.iter_mut().enumerate() {
-            rows[*place] = j as u32;
-            *place += 1;
-        }
+        let mut columns = vec![0_u32; row_starts[dimension]];
+        let mut next = row_starts.clone();
         visit(&mut |i, j| {
             if i != j {
-                let column = i.min(j) as usize;
-                rows[next[column]] = i.max(j);
-                next[column] += 1;
+                let place = &mut next[i.max(j) as usize];
+                columns[*place] = i.min(j);
+                *place += 1;
             }
         });
-        // Sort each column and close the gaps that repeated entries leave.
+        // Row after row they come into their columns in order, and repeated ones behind each other.
+        let mut starts = vec![0_usize; dimension + 1];
+        columns.iter().for_each(|&column| starts[column as usize + 1] += 1);
+        for j in 0..dimension {
+            starts[j + 1] += starts[j] + 1;
+        }
+        let mut rows = vec![0_u32; total];
+        next.copy_from_slice(&starts);
+        for j in 0..dimension {
+            rows[next[j]] = j as u32;
+            next[j] += 1;
+            for &column in &columns[row_starts[j]..row_starts[j + 1]] {
+                let place = &mut next[column as usize];
+                if rows[*place - 1] != j as u32 {
+                    rows[*place] = j as u32;
+                    *place += 1;
+                }
+            }
+        }
+        // Close the gaps that repeated entries leave.
         let mut column_starts = Vec::with_capacity(dimension + 1);
         column_starts.push(0);
         let mut length = 0;
-        for (&start, &end) in starts.iter().zip(&next) {
-            rows[start..end].sort_unstable();
-            let column_start = length;
-            for k in start..end {
-                if length == column_start || rows[length - 1] != rows[k] {
-                    rows[length] = rows[k];
-                    length += 1;
-                }
-            }
+        for (&start, &end) in starts.iter().zip(&next[..dimension]) {
+            rows.copy_within(start..end, length);
+            length += end - start;
             column_starts.push(length as u32);
         }
         rows.truncate(length);

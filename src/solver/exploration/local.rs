@@ -162,9 +162,10 @@ impl Local {
         let at = |i: &u32| x[*i as usize];
         match self.matrices(item) {
             None => {
-                let first = at(&indices[0]);
-                let mean = first + indices.iter().map(|i| at(i) - first).sum::<DVec3>() / indices.len() as f64;
-                rows.iter_mut().zip(indices).for_each(|(row, i)| *row = at(i) - mean);
+                rows.iter_mut().zip(indices).for_each(|(row, i)| *row = at(i));
+                let first = rows[0];
+                let mean = first + rows.iter().map(|row| *row - first).sum::<DVec3>() / indices.len() as f64;
+                rows.iter_mut().for_each(|row| *row -= mean);
             }
             Some((a, _)) => {
                 for (row, a) in rows.iter_mut().zip(a.chunks_exact(indices.len())) {
@@ -229,8 +230,12 @@ impl Local {
                 shifts.resize(item.row_count, DVec3::ZERO);
                 shift(item, &rows[item.rows()], &mut shifts);
                 let own = &mut points[item.first_point - this.point_bounds[chunk]..][..item.point_count];
-                for (place, (point, &index)) in own.iter_mut().zip(&this.indices[item.points()]).enumerate() {
-                    *point = x[index as usize] + this.lifted(item, place, &shifts);
+                let own = own.iter_mut().zip(&this.indices[item.points()]);
+                if item.coefficients.is_none() {
+                    own.zip(&shifts).for_each(|((point, &index), shift)| *point = x[index as usize] + *shift);
+                } else {
+                    let lifted = |place| this.lifted(item, place, &shifts);
+                    (0..).zip(own).for_each(|(place, (point, &i))| *point = x[i as usize] + lifted(place));
                 }
             }
         };
