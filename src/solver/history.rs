@@ -12,13 +12,12 @@
 use glam::DVec3;
 
 use super::parallel::for_parts;
-use crate::linalg::simd::{Kernel, dispatch, mul_add};
 
 /// Points of a chunk at most. Its pairs fit a core's second cache, and its vectors are many times as long as the sums.
 const CHUNK_POINTS: usize = 512;
 
-/// Points of a chunk are a multiple of this, so that [`Dots`] takes vectors whole.
-const STEP_POINTS: usize = 16;
+/// Points of a chunk are a multiple of this, so that [`dot`] takes vectors whole.
+const STEP_POINTS: usize = 8;
 
 /// Numbers of one vector in a chunk at most; those beyond the last point are 0.
 const MOST_WIDTH: usize = 3 * CHUNK_POINTS;
@@ -177,12 +176,12 @@ impl History {
             for place in (0..length).map(|age| (newest + capacity - age) % capacity) {
                 let (s, d) = pairs[2 * place * width..][..2 * width].split_at(width);
                 let products = &mut products[PRODUCTS * place..][..PRODUCTS];
-                [products[1], products[3]] = dispatch(Dots { a: d, with: [step, step_change] });
+                (products[1], products[3]) = (dot(d, step), dot(d, step_change));
                 if !is_euclidean {
-                    [products[0], products[2]] = dispatch(Dots { a: s, with: [step, step_change] });
+                    (products[0], products[2]) = (dot(s, step), dot(s, step_change));
                 }
             }
-            [products[PRODUCTS * capacity]] = dispatch(Dots { a: last_plain, with: [step] });
+            products[PRODUCTS * capacity] = dot(last_plain, step);
         };
         for_parts(&self.data_bounds, &mut self.data, &mut self.results, is_parallel, &work);
         let first = (LAST + 2 * capacity) * width;
@@ -212,9 +211,11 @@ impl History {
             for age in 0..length {
                 let place = (newest + capacity - age) % capacity;
                 let (s, d) = data[(LAST + 2 * place) * width..][..2 * width].split_at(width);
-                dispatch(AddScaled { sum, factor: combination.moves[age], vector: s });
-                if !is_euclidean {
-                    dispatch(AddScaled { sum, factor: combination.changes[age], vector: d });
+                let (a, b) = (combination.moves[age], combination.changes[age]);
+                if is_euclidean {
+                    sum.iter_mut().zip(s).for_each(|(sum, both)| *sum += a * both);
+                } else {
+                    sum.iter_mut().zip(s).zip(d).for_each(|((sum, s), d)| *sum += a * s + b * d);
                 }
             }
             for (direction, sum) in direction.iter_mut().zip(sum.chunks_exact(3)) {
@@ -262,50 +263,15 @@ impl History {
     }
 }
 
-/// `aᵀ b` for one vector of a chunk with others, each in so many sums that they do not wait for each other.
-struct Dots<'a, const N: usize> {
-    a: &'a [f64],
-    with: [&'a [f64]; N],
-}
-
-const SUMS: usize = 16;
-
-impl<const N: usize> Kernel for Dots<'_, N> {
-    type Output = [f64; N];
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) -> [f64; N] {
-        let mut sums = [[0.0; SUMS]; N];
-        let (a, _) = self.a.as_chunks::<SUMS>();
-        let with = self.with.map(|b| b.as_chunks::<SUMS>().0);
-        for (k, a) in a.iter().enumerate() {
-            for (sums, b) in sums.iter_mut().zip(with) {
-                let b = &b[k];
-                for i in 0..SUMS {
-                    sums[i] = mul_add::<FMA>(a[i], b[i], sums[i]);
-                }
-            }
-        }
-        sums.map(|sums| sums.iter().sum())
-    }
-}
-
-/// Adds a multiple of one vector of a chunk to another.
-struct AddScaled<'a> {
-    sum: &'a mut [f64],
-    factor: f64,
-    vector: &'a [f64],
-}
-
-impl Kernel for AddScaled<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const FMA: bool>(self) {
-        for (sum, x) in self.sum.iter_mut().zip(self.vector) {
-            *sum = mul_add::<FMA>(self.factor, *x, *sum);
+/// `aᵀ b` of two vectors of a chunk, in eight sums that do not wait for each other.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    for (a, b) in a.chunks_exact(8).zip(b.chunks_exact(8)) {
+        for i in 0..8 {
+            sums[i] += a[i] * b[i];
         }
     }
+    sums.iter().sum()
 }
 
 #[cfg(test)]
@@ -366,6 +332,40 @@ mod tests {
         };
         assert!((0..n).all(|i| (direction[i] - expected(i)).length() < 1e-13));
         assert_near(history.plain_along(&combination), product(&f, &|i| direction[i]));
+    }
+
+    #[test]
+    fn a_euclidean_history_is_one_whose_metric_is_the_identity() {
+        // Two chunks; two pairs of five fall out of the window.
+        let (n, capacity) = (CHUNK_POINTS + 3, 3);
+        let (mut euclidean, mut any) = (History::default(), History::default());
+        euclidean.reset(capacity, n);
+        any.reset(capacity, n);
+        for k in 0..6 {
+            let [points, plain, _] = iterate(n, k);
+            let image: Vec<DVec3> = plain.iter().zip(&points).map(|(g, x)| *g - *x).collect();
+            euclidean.push(&points, &plain, None, false);
+            any.push(&points, &plain, Some(&image), false);
+        }
+        let mut combination = Combination::default();
+        combination.reset(capacity);
+        for a in 0..capacity {
+            (combination.moves[a], combination.changes[a]) = (0.5 - a as f64, 0.5 - a as f64);
+            assert_eq!(euclidean.change_plain(a), any.change_plain(a));
+            assert!((0..capacity).all(|b| euclidean.change_change(a, b) == any.change_change(a, b)));
+        }
+        assert_eq!(euclidean.plain_squared(), any.plain_along(&Combination { plain: 1.0, ..zeros(capacity) }));
+        let direction = |history: &mut History| {
+            let mut direction = vec![DVec3::ZERO; n];
+            history.combine(&combination, &mut direction, false);
+            direction
+        };
+        let pairs = direction(&mut euclidean).into_iter().zip(direction(&mut any));
+        pairs.for_each(|(found, expected)| assert!(found.distance(expected) < 1e-13, "{found} is not {expected}"));
+    }
+
+    fn zeros(length: usize) -> Combination {
+        Combination { plain: 0.0, moves: vec![0.0; length], changes: vec![0.0; length] }
     }
 
     #[test]

@@ -37,8 +37,8 @@ const MEMORY: usize = 6;
 const FARTHEST: f64 = 100.0;
 
 /// The penalty over that at which it and the objective have the same trace. Sweeps to a tenth of the distance on the
-/// surfaces of Fig. 12 with 21 and 61 points a side: 28 and 14 at 4, 17 and 26 at 8, 16 and 29 from 8.25 to 9, 19 and 32
-/// at 12. From 8 to 8.75 the first finish succeeds on both with exact steps.
+/// surfaces of Fig. 12 with 21 and 61 points a side: 28 and 14 at 4, 17 and 26 at 8, 16 and 27 at 8.25, 16 and 30 at 9,
+/// 19 and 32 at 12. Up to 8.75 the Newton steps on the former are exact; up to 8.25 those on costa2k are four, then five.
 const SHARE: f64 = 8.25;
 
 /// A constraint counts as active from this part of the model's size on.
