@@ -116,6 +116,38 @@ typedef enum shapeop_err {
      * An error inside the library: please report it.
      */
     SO_INTERNAL = 26,
+    /**
+     * The mesh is no grid of quads.
+     */
+    SO_NOT_GRID = 27,
+    /**
+     * Points that must be on one plane are not.
+     */
+    SO_NOT_PLANAR = 28,
+    /**
+     * Points that must be on one circle are not.
+     */
+    SO_NOT_CIRCULAR = 29,
+    /**
+     * The input is in a special position where no answer is defined.
+     */
+    SO_DEGENERATE = 30,
+    /**
+     * Two shapes that must meet do not.
+     */
+    SO_NO_INTERSECTION = 31,
+    /**
+     * No solution exists for this input.
+     */
+    SO_NO_SOLUTION = 32,
+    /**
+     * Opposite edges of a quad are parallel where the fourth corner is found by meeting them.
+     */
+    SO_SINGULAR = 33,
+    /**
+     * A ring does not close.
+     */
+    SO_NOT_CLOSED = 34,
 } shapeop_err;
 #endif
 

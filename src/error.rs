@@ -39,6 +39,23 @@ pub enum Status {
     TooLarge = 25,
     /// An error inside the library: please report it.
     Internal = 26,
+    /// The mesh is no grid of quads.
+    NotGrid = 27,
+    /// Points that must be on one plane are not.
+    NotPlanar = 28,
+    /// Points that must be on one circle are not.
+    NotCircular = 29,
+    /// The input is in a special position where no answer is defined: points coincide or are on a line, an image is at
+    /// infinity.
+    Degenerate = 30,
+    /// Two shapes that must meet do not.
+    NoIntersection = 31,
+    /// No solution exists for this input.
+    NoSolution = 32,
+    /// Opposite edges of a quad are parallel where the fourth corner is found by meeting them.
+    Singular = 33,
+    /// A ring does not close.
+    NotClosed = 34,
 }
 
 impl Status {
@@ -58,6 +75,14 @@ impl Status {
         Self::InvalidInput,
         Self::TooLarge,
         Self::Internal,
+        Self::NotGrid,
+        Self::NotPlanar,
+        Self::NotCircular,
+        Self::Degenerate,
+        Self::NoIntersection,
+        Self::NoSolution,
+        Self::Singular,
+        Self::NotClosed,
     ];
 
     /// One line for people, without the details that only an [`Error`] knows.
@@ -77,6 +102,14 @@ impl Status {
             Self::InvalidInput => "the input could not be read",
             Self::TooLarge => "the problem is too large for this machine",
             Self::Internal => "an error inside the library",
+            Self::NotGrid => "the mesh is no grid of quads",
+            Self::NotPlanar => "the points are not on one plane",
+            Self::NotCircular => "the points are not on one circle",
+            Self::Degenerate => "the input is in a special position where no answer is defined",
+            Self::NoIntersection => "two shapes that must meet do not",
+            Self::NoSolution => "no solution exists",
+            Self::Singular => "the edges that must meet are parallel",
+            Self::NotClosed => "the ring does not close",
         }
     }
 }

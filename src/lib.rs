@@ -66,6 +66,7 @@
 pub mod capi;
 pub mod constraints;
 pub mod error;
+pub mod geometry;
 pub mod linalg;
 pub mod mesh;
 pub mod problem;

@@ -46,6 +46,22 @@ pub enum shapeop_err {
     SO_TOO_LARGE = 25,
     /// An error inside the library: please report it.
     SO_INTERNAL = 26,
+    /// The mesh is no grid of quads.
+    SO_NOT_GRID = 27,
+    /// Points that must be on one plane are not.
+    SO_NOT_PLANAR = 28,
+    /// Points that must be on one circle are not.
+    SO_NOT_CIRCULAR = 29,
+    /// The input is in a special position where no answer is defined.
+    SO_DEGENERATE = 30,
+    /// Two shapes that must meet do not.
+    SO_NO_INTERSECTION = 31,
+    /// No solution exists for this input.
+    SO_NO_SOLUTION = 32,
+    /// Opposite edges of a quad are parallel where the fourth corner is found by meeting them.
+    SO_SINGULAR = 33,
+    /// A ring does not close.
+    SO_NOT_CLOSED = 34,
 }
 
 impl From<Status> for shapeop_err {
@@ -65,6 +81,14 @@ impl From<Status> for shapeop_err {
             Status::InvalidInput => Self::SO_INVALID_INPUT,
             Status::TooLarge => Self::SO_TOO_LARGE,
             Status::Internal => Self::SO_INTERNAL,
+            Status::NotGrid => Self::SO_NOT_GRID,
+            Status::NotPlanar => Self::SO_NOT_PLANAR,
+            Status::NotCircular => Self::SO_NOT_CIRCULAR,
+            Status::Degenerate => Self::SO_DEGENERATE,
+            Status::NoIntersection => Self::SO_NO_INTERSECTION,
+            Status::NoSolution => Self::SO_NO_SOLUTION,
+            Status::Singular => Self::SO_SINGULAR,
+            Status::NotClosed => Self::SO_NOT_CLOSED,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod cholesky;
 pub mod conjugate_gradients;
+pub mod dense;
 mod fronts;
 pub mod lanes;
 mod multilevel;

@@ -6,6 +6,7 @@
 mod closest;
 pub mod file;
 pub mod fit;
+pub mod grid;
 pub mod measure;
 mod obj;
 mod off;
@@ -16,6 +17,7 @@ mod topology;
 
 pub use closest::ClosestPoints;
 pub use file::Format;
+pub use grid::Grid;
 pub use polylines::polylines;
 pub use topology::{BoundaryChain, Neighbours, Topology};
 
@@ -72,9 +74,7 @@ impl Mesh {
 
     /// The diagonal of the box that holds all points, along the axes; 0 without points.
     pub fn diagonal(&self) -> f64 {
-        let low = self.points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = self.points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        if self.points.is_empty() { 0.0 } else { low.distance(high) }
+        grid::diagonal(&self.points)
     }
 }
 

@@ -39,6 +39,22 @@ namespace ShapeOp
         TooLarge = 25,
         /// <summary>An error inside the library: please report it.</summary>
         Internal = 26,
+        /// <summary>The mesh is no grid of quads.</summary>
+        NotGrid = 27,
+        /// <summary>Points that must be on one plane are not.</summary>
+        NotPlanar = 28,
+        /// <summary>Points that must be on one circle are not.</summary>
+        NotCircular = 29,
+        /// <summary>The input is in a special position where no answer is defined.</summary>
+        Degenerate = 30,
+        /// <summary>Two shapes that must meet do not.</summary>
+        NoIntersection = 31,
+        /// <summary>No solution exists for this input.</summary>
+        NoSolution = 32,
+        /// <summary>Opposite edges of a quad are parallel where the fourth corner is found by meeting them.</summary>
+        Singular = 33,
+        /// <summary>A ring does not close.</summary>
+        NotClosed = 34,
     }
 
     /// <summary>How iterations are accelerated: see shapeop_setAcceleration.</summary>

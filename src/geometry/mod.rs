@@ -1,0 +1,6 @@
+//! Published systems of architectural geometry on top of meshes and the solver.
+
+pub mod canal;
+pub mod circle;
+#[cfg(test)]
+mod random;
