@@ -260,3 +260,129 @@ impl Open<'_> {
 fn size_squared(diagonal: DVec3, edge: DVec3) -> f64 {
     diagonal.length_squared().max(edge.length_squared())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::geometry::canal::cyclide::Cyclide;
+    use crate::geometry::canal::parallel::check_parallel;
+    use crate::geometry::canal::quality::{Quality, largest};
+    use crate::geometry::random::Random;
+
+    fn distance(a: &Grid, b: &Grid) -> f64 {
+        a.points().iter().zip(b.points()).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn random_lengths_keep_directions_planes_and_circles_and_are_undone() {
+        let mut random = Random(17);
+        let grid = Cyclide::new().grid([0.2, 2.2], [-0.9, 1.4], 41, 26);
+        let own = Lengths::of(&grid);
+        let mut factors = |count: usize| (0..count).map(|_| random.between(0.5, 2.0)).collect::<Vec<f64>>();
+        let lengths = own.scaled(&factors(40), &factors(25)).unwrap();
+        let image = combescure(&grid, &lengths, DVec3::new(5.0, -1.0, 0.3)).unwrap().grid;
+        let parallel = check_parallel(&grid, &image).unwrap();
+        let quality = Quality::of(&image);
+        assert!(parallel.largest_sine < 1e-12, "{}", parallel.largest_sine);
+        assert!(largest(&quality.planarity) < 1e-11 && largest(&quality.concyclicity) < 1e-11);
+        let back = combescure(&image, &own, grid.at(0, 0)).unwrap().grid;
+        assert!(distance(&back, &grid) < 1e-10 * grid.diagonal(), "{}", distance(&back, &grid));
+    }
+
+    #[test]
+    fn equal_factors_give_a_similar_grid() {
+        let grid = Cyclide::new().grid([0.2, 1.2], [-0.4, 1.0], 6, 5);
+        for factor in [1.0, 3.5, -0.5] {
+            let lengths = Lengths::of(&grid).scaled(&[factor; 5], &[factor; 4]).unwrap();
+            let image = combescure(&grid, &lengths, factor * grid.at(0, 0)).unwrap();
+            let scaled = grid.points().iter().zip(image.grid.points()).map(|(a, b)| (factor * *a).distance(*b));
+            assert!(scaled.fold(0.0, f64::max) < 1e-14 * grid.diagonal() * factor.abs().max(1.0));
+            let edge_count = 5 * 5 + 4 * 6;
+            assert_eq!(image.reversed_count, if factor < 0.0 { edge_count } else { 0 });
+        }
+    }
+
+    #[test]
+    fn the_interior_form_of_equation_four_gives_the_same_lengths() {
+        let mut random = Random(23);
+        for _ in 0..1000 {
+            let mut angles: [f64; 4] = std::array::from_fn(|k| (k as f64 + random.between(0.1, 0.9)) * TAU / 4.0);
+            angles.sort_by(f64::total_cmp);
+            let [a, b, c, d] = angles.map(|angle| DVec3::new(angle.cos(), angle.sin(), 0.0));
+            let (l0, l3) = (random.between(0.2, 2.0), random.between(0.2, 2.0));
+            // Rows run a d / b c: A = (0, 0), B = (1, 0), C = (1, 1), D = (0, 1).
+            let grid = Grid::new(vec![a, d, b, c], 2, 2, [false; 2]).unwrap();
+            let lengths = Lengths { column: vec![l0], row: vec![l3] };
+            let image = combescure(&grid, &lengths, DVec3::ZERO).unwrap().grid;
+            let l1 = (image.at(1, 1) - image.at(1, 0)).dot((c - b).normalize());
+            let l2 = (image.at(1, 1) - image.at(0, 1)).dot((c - d).normalize());
+            let angle = |at: DVec3, from: DVec3, to: DVec3| (from - at).angle_between(to - at);
+            let (alpha, beta, delta) = (angle(a, b, d), angle(b, a, c), angle(d, a, c));
+            let left = [l0 - l3 * alpha.cos(), l3 * alpha.sin()];
+            let right = [beta.cos() * l1 - (alpha + delta).cos() * l2, beta.sin() * l1 + (alpha + delta).sin() * l2];
+            for k in 0..2 {
+                assert!((left[k] - right[k]).abs() < 1e-12, "{left:?} {right:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn lengths_that_do_not_close_a_tube_are_refused_and_mended() {
+        let mut random = Random(4);
+        let cyclide = Cyclide::new();
+        for (u, v) in [([0.0, TAU], [-0.4, 1.0]), ([0.2, 1.8], [0.0, TAU]), ([0.0, TAU], [0.0, TAU])] {
+            let grid = cyclide.grid(u, v, 9, 8);
+            let own = Lengths::of(&grid);
+            assert!(distance(&combescure(&grid, &own, grid.at(0, 0)).unwrap().grid, &grid) < 1e-12);
+            let mut factors = |count: usize| (0..count).map(|_| random.between(0.9, 1.1)).collect::<Vec<f64>>();
+            let [rows, columns] = grid.spans();
+            let lengths = own.scaled(&factors(rows), &factors(columns)).unwrap();
+            assert_eq!(combescure(&grid, &lengths, DVec3::ZERO).unwrap_err().status(), Status::NotClosed);
+            let closed = close(&grid, &lengths).unwrap();
+            let image = combescure(&grid, &closed, DVec3::ZERO).unwrap().grid;
+            assert!(check_parallel(&grid, &image).unwrap().largest_sine < 1e-9);
+            assert!(distance(&image, &grid) > 1e-3);
+            // Lengths that close already stay.
+            let again = close(&grid, &closed).unwrap();
+            assert!(again.row.iter().zip(&closed.row).all(|(a, b)| (a - b).abs() < 1e-9));
+        }
+    }
+
+    #[test]
+    fn quads_without_a_fourth_corner_are_named() {
+        let refusal = |points: [[f64; 3]; 4]| {
+            let grid = Grid::new(points.map(DVec3::from).to_vec(), 2, 2, [false; 2]).unwrap();
+            let lengths = Lengths { column: vec![1.0], row: vec![2.0] };
+            let error = combescure(&grid, &lengths, DVec3::ZERO).unwrap_err();
+            (error.status(), error.place().to_owned())
+        };
+        let (a, b, d) = ([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+        let place = "faces[0]".to_owned();
+        // C on the line B D; C at B; C lifted; C at D.
+        assert_eq!(refusal([a, d, b, [0.5, 0.5, 0.0]]), (Status::Singular, place.clone()));
+        assert_eq!(refusal([a, d, b, b]), (Status::Degenerate, place.clone()));
+        assert_eq!(refusal([a, d, b, d]), (Status::Degenerate, place.clone()));
+        assert_eq!(refusal([a, d, b, [1.0, 1.0, 0.1]]), (Status::NotPlanar, place));
+    }
+
+    #[test]
+    fn lengths_come_from_parallel_polylines_only() {
+        let grid = Cyclide::new().grid([0.2, 1.2], [-0.4, 1.0], 4, 3);
+        let lengths = Lengths::of(&grid).scaled(&[2.0, -1.0, 0.5], &[1.0, 3.0]).unwrap();
+        let image = combescure(&grid, &lengths, DVec3::ZERO).unwrap().grid;
+        let (column, row) = (image.column(0), image.row(0).to_vec());
+        let read = Lengths::of_polylines(&grid, &column, &row).unwrap();
+        assert!(read.column.iter().zip(&lengths.column).all(|(a, b)| (a - b).abs() < 1e-14));
+        let mut bent = row.clone();
+        bent[2] += 0.01 * DVec3::Z;
+        assert_eq!(Lengths::of_polylines(&grid, &column, &bent).unwrap_err().place(), "row[1]");
+        assert_eq!(Lengths::of_polylines(&grid, &column[1..], &row).unwrap_err().place(), "column");
+        let refusal = |column: Vec<f64>| {
+            combescure(&grid, &Lengths { column, row: vec![1.0; 2] }, DVec3::ZERO).unwrap_err().to_string()
+        };
+        assert_eq!(refusal(vec![1.0; 2]), "column lengths: expected 3, found 2");
+        assert!(refusal(vec![1.0, f64::NAN, 1.0]).starts_with("column lengths[1]: expected a finite number"));
+    }
+}

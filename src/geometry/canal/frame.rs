@@ -67,8 +67,11 @@ impl Frame {
         Self { t1, t2: normal.cross(t1), normal }
     }
 
-    /// The frame at the other end of an edge.
+    /// The frame at the other end of an edge; the same one where the edge has no length.
     pub fn across(&self, edge: DVec3, direction: Direction) -> Self {
+        if edge == DVec3::ZERO {
+            return *self;
+        }
         let [t1, t2, normal] = [self.t1, self.t2, self.normal].map(|v| reflect(v, edge));
         match direction {
             Direction::One => Self { t1: -t1, t2, normal },

@@ -1,6 +1,14 @@
 //! Super-canal surfaces: circular nets from two or three curves (Mesnil, Douthe, Baverel, Léger 2018, "Morphogenesis of surfaces
 //! with planar lines of curvature and application to architectural design").
 
+pub mod chain;
 pub mod combescure;
+#[cfg(test)]
+mod cyclide;
 pub mod frame;
 pub mod inversion;
+pub mod net;
+pub mod parallel;
+pub mod patch;
+pub mod quality;
+pub mod surface;
