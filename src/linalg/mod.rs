@@ -5,6 +5,7 @@ pub mod conjugate_gradients;
 pub mod dense;
 mod fronts;
 pub mod lanes;
+pub mod least_squares;
 mod multilevel;
 mod nested_dissection;
 mod panels;

@@ -5,9 +5,12 @@ pub mod chain;
 pub mod combescure;
 #[cfg(test)]
 mod cyclide;
+pub mod folds;
 pub mod frame;
 pub mod inversion;
+pub mod membrane;
 pub mod net;
+pub mod panels;
 pub mod parallel;
 pub mod patch;
 pub mod quality;
