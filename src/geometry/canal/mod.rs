@@ -4,4 +4,5 @@
 pub mod combescure;
 pub mod frame;
 pub mod inversion;
+mod quad;
 pub mod strip;

@@ -7,18 +7,10 @@
 //! next circle ([`of_radii`]). A third is the length of the border's edge `Q_kQ_{k+1}` ([`of_border_edges`]); with it a border of one
 //! given length is had by [`edges_of_border`].
 //!
-//! **On one line.** The inversion at `P_{k+1}` with the ratio `h² = ‖P_kP_{k+1}‖²` makes a line of the circle. In coordinates from
-//! `P_{k+1}` the image of `P_k` is `p = P_k` and that of `Q_k` is `q`; with `t` the unit vector from `p` to `q` the points
-//! beyond `q`, `q + s t` with `s > 0`, are the images of the points between `Q_k` and `P_{k+1}`: those for which the corners
-//! `P_k, Q_k, Q_{k+1}, P_{k+1}` are in cyclic order. So order is a sign, and each number is a quadratic equation for `s`:
-//!
-//! - length: `‖q + s t‖ = h²/L`;
-//! - border's edge: `h² s / (‖q‖ ‖q + s t‖) = M`;
-//! - radius of the next circle: the line through `q + s t` and the image of `P_{k+2}` is `h²/2R` away from the origin.
-//!
-//! **Which root.** Where one root is in order, it is taken. Where both are, which for lengths happens when `P_kQ_k` leans
-//! backwards, that one is whose border edge is nearer to the guide's edge in length, by ratio: the other makes the strip jump.
-//! Where none is, the quad is crossed: the strip says so, or refuses it where it is asked to be strict.
+//! Each number is a quadratic equation on the circle, solved in `quad.rs`. Where one root has the corners in cyclic order, it is
+//! taken. Where both have, which for lengths happens when `P_kQ_k` leans backwards, that one is whose border edge is nearer to
+//! the guide's edge in length, by ratio: the other makes the strip jump. Where none has, the quad is crossed: the strip says so,
+//! or refuses it where it is asked to be strict.
 //!
 //! **Lengths are over-determined.** With `α` the angle from the guide's tangent to the chord `PQ`, a smooth strip has
 //! `L' = −(1 + λ) cos α`, where `λ > 0` is the border's speed over the guide's, and the angle follows from the strip's past: with
@@ -26,21 +18,13 @@
 //! shrinks where lengths shrink and grows where lengths grow, like `exp(4 s / L L')` on a straight guide. Hence
 //! [`Options::projects_lengths`] and [`Options::fits_start`].
 
-use std::ops::RangeInclusive;
-
 use glam::DVec3;
 
+use super::quad::{Choice, Quad, ROUND_OFF};
 use crate::error::{Error, Result, Status, finite};
 use crate::geometry::circle::{Circle, PARALLEL};
 use crate::mesh::Grid;
 use crate::mesh::grid::check_finite;
-
-/// A length this close above the largest that a circle allows, as a multiple of it, is that length: it differs by round-off.
-const ROUND_OFF: f64 = 1e-12;
-
-/// Part of the way from `Q_k` to `P_{k+1}`, on the line that the circle becomes and in units of its distance from `Q_k`'s image,
-/// that a length which is too large to be in order is given back: at the limit itself the border's edge would have no length.
-const LEAST_STEP: f64 = 1e-3;
 
 /// How far a first length may be from the distance of the first points, as a multiple of it.
 const FIRST_LENGTH: f64 = 1e-9;
@@ -100,8 +84,8 @@ impl Strip {
 ///
 /// Where `fits_start` is set, `Q_0` is in the half plane from the line `P_0P_1` through `start`, as far from `P_0` as `lengths[0]`
 /// says, in the direction that follows from `L'(0)`: the border's speed is `λ = 1 − L κ·u / sin²α`, with `κ` the curvature vector
-/// of the circle through the first three points and `u` the direction of the chord, so that the angle at first does not
-/// change; and the first quad has the sides `h`, `L_1`, `λh`, `L_0`, whence its angle. If the lengths cannot all be met from there,
+/// of the circle through the first three points and `u` the direction of the chord, so that the angle `α` to that circle at first
+/// does not change; and the first quad has the sides `h`, `L_1`, `λh`, `L_0`, whence its angle. If the lengths cannot all be met from there,
 /// the angle is sought that misses them by least. Otherwise `Q_0` is `start`.
 ///
 /// # Errors
@@ -262,156 +246,6 @@ fn propagate(points: &[DVec3], start: DVec3, choose: &mut dyn FnMut(&Quad, usize
     Ok(strip)
 }
 
-/// The solutions of an equation, not a number where there are fewer than two.
-type Roots = [f64; 2];
-
-/// A place on a quad's line.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Choice {
-    pub s: f64,
-    pub is_flipped: bool,
-}
-
-impl Choice {
-    /// Among the roots: in order and nearest to the guide's edge; if none is in order, the nearest to `Q_k`.
-    pub fn of(quad: &Quad, roots: Roots) -> Option<Self> {
-        let misfit = |s: f64| (quad.border_edge(s) / quad.guide_edge()).ln().abs();
-        match roots {
-            [s, r] if s > 0.0 && r > 0.0 => {
-                Some(Self { s: if misfit(r) < misfit(s) { r } else { s }, is_flipped: false })
-            }
-            // `max` prefers a number to none.
-            [s, r] => Some(s.max(r)).filter(|s| s.is_finite()).map(|s| Self { s, is_flipped: !(s > 0.0) }),
-        }
-    }
-}
-
-/// A quad of which the next point is sought: its circle as the line of the module's documentation.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Quad {
-    /// `P_{k+1}`, the center of inversion.
-    corner: DVec3,
-    /// The ratio of inversion, the squared length of the guide's edge.
-    ratio: f64,
-    /// The image of `Q_k`, from the corner.
-    q: DVec3,
-    /// The direction in which the next point is.
-    t: DVec3,
-    /// The component of `q` along `t`.
-    along: f64,
-    /// `‖P_kQ_k‖`.
-    previous_length: f64,
-}
-
-impl Quad {
-    /// `None` where the three points are on a line.
-    pub fn new(previous: DVec3, across: DVec3, corner: DVec3) -> Option<Self> {
-        let p = previous - corner;
-        let ratio = p.length_squared();
-        let offset = across - corner;
-        let q = (ratio / offset.length_squared()) * offset;
-        let step = q - p;
-        let length = step.length();
-        // Also false where one is not finite.
-        if !(p.cross(step).length() > PARALLEL * p.length() * length && length < f64::INFINITY) {
-            return None;
-        }
-        let t = step / length;
-        Some(Self { corner, ratio, q, t, along: q.dot(t), previous_length: previous.distance(across) })
-    }
-
-    fn image(&self, point: DVec3) -> DVec3 {
-        let offset = point - self.corner;
-        (self.ratio / offset.length_squared()) * offset
-    }
-
-    /// The point of the circle whose image is `q + s t`.
-    pub fn point(&self, s: f64) -> DVec3 {
-        let image = self.q + s * self.t;
-        self.corner + (self.ratio / image.length_squared()) * image
-    }
-
-    fn guide_edge(&self) -> f64 {
-        self.ratio.sqrt()
-    }
-
-    fn border_edge(&self, s: f64) -> f64 {
-        self.ratio * s.abs() / (self.q.length() * (self.q + s * self.t).length())
-    }
-
-    /// `2R`: the line is `h²/2R` away from the origin.
-    fn diameter(&self) -> f64 {
-        self.ratio / self.q.cross(self.t).length()
-    }
-
-    /// The least upper bound of the lengths at which the corners are in cyclic order: the diameter where the arc from `Q_k` to
-    /// `P_{k+1}` is more than half of the circle, else the length at `Q_k` itself.
-    pub fn largest_length(&self) -> f64 {
-        if self.along < 0.0 { self.diameter() } else { self.ratio / self.q.length() }
-    }
-
-    /// Where that length is; where it is at `Q_k`, a little beyond.
-    fn at_largest_length(&self) -> f64 {
-        if self.along < 0.0 { -self.along } else { LEAST_STEP * self.q.length() }
-    }
-
-    /// Where the crossing edge has this length: `s² + 2 (q·t) s + q² − (h²/L)² = 0`.
-    pub fn at_length(&self, length: f64) -> Roots {
-        let distance = self.ratio / length;
-        let apart = self.q.cross(self.t).length();
-        if distance < apart {
-            let is_the_diameter = distance * (1.0 + ROUND_OFF) >= apart;
-            return [if is_the_diameter { -self.along } else { f64::NAN }, f64::NAN];
-        }
-        let norm = self.q.length();
-        quadratic_roots(1.0, self.along, (norm - distance) * (norm + distance))
-    }
-
-    /// The first place beyond `q` where the border's edge has this length: with `m = (M ‖q‖/h²)²` it is where
-    /// `(1 − m) s² − 2 m (q·t) s − m q² = 0`.
-    fn at_border_edge(&self, length: f64) -> Option<f64> {
-        let norm = self.q.length();
-        let m = (length * norm / self.ratio).powi(2);
-        let roots = quadratic_roots(1.0 - m, -m * self.along, -m * norm * norm);
-        roots.into_iter().filter(|&s| s > 0.0).min_by(f64::total_cmp)
-    }
-
-    fn largest_border_edge(&self) -> f64 {
-        if self.along < 0.0 { self.diameter() } else { self.ratio / self.q.length() }
-    }
-
-    /// Where the line from `q + s t` through `b` is this distance from the origin, and between which values that distance is for
-    /// points in order.
-    ///
-    /// Its square is `g = N/D` with `N = ‖b × (q + s t)‖²` and `D = ‖q + s t − b‖²`, quadratic polynomials
-    /// `n₂ s² + 2 n₁ s + n₀` and `s² + 2 d₁ s + d₀`; its extremes are at the ends and where `N'D = ND'`, that is
-    /// `(n₂d₁ − n₁) s² + (n₂d₀ − n₀) s + n₁d₀ − n₀d₁ = 0`.
-    fn at_line_distance(&self, b: DVec3, distance: f64) -> (Roots, RangeInclusive<f64>) {
-        let (u, v) = (b.cross(self.t), b.cross(self.q));
-        let offset = self.q - b;
-        let [n0, n1, n2] = [v.length_squared(), u.dot(v), u.length_squared()];
-        let (d0, d1) = (offset.length_squared(), offset.dot(self.t));
-        let squared = distance * distance;
-        let roots = quadratic_roots(n2 - squared, n1 - squared * d1, n0 - squared * d0);
-        let g = |s: f64| (n0 + s * (2.0 * n1 + s * n2)) / (d0 + s * (2.0 * d1 + s));
-        let turning = quadratic_roots(n2 * d1 - n1, 0.5 * (n2 * d0 - n0), n1 * d0 - n0 * d1);
-        let extremes = turning.into_iter().filter(|&s| s > 0.0).map(g);
-        let (low, high) = extremes.fold((n2.min(g(0.0)), n2.max(g(0.0))), |(l, h), g| (l.min(g), h.max(g)));
-        (roots, low.max(0.0).sqrt()..=high.max(0.0).sqrt())
-    }
-}
-
-/// The real solutions of `a x² + 2 b x + c = 0`, without cancellation.
-fn quadratic_roots(a: f64, b: f64, c: f64) -> Roots {
-    let discriminant = b * b - a * c;
-    if !(discriminant >= 0.0) {
-        return [f64::NAN; 2];
-    }
-    let sum = -(b + discriminant.sqrt().copysign(b));
-    // One is sum / a, their product c / a.
-    [sum / a, c / sum].map(|root| if root.is_finite() { root } else { f64::NAN })
-}
-
 /// The start turned to where lengths can go on.
 fn fitted_start(points: &[DVec3], start: DVec3, lengths: &[f64]) -> Result<DVec3> {
     let edge = points[1] - points[0];
@@ -423,6 +257,7 @@ fn fitted_start(points: &[DVec3], start: DVec3, lengths: &[f64]) -> Result<DVec3
     let at = |angle: f64| points[0] + lengths[0] * (angle.cos() * x + angle.sin() * y);
     let curvature = points.get(2).and_then(|&third| Circle::through(points[0], points[1], third));
     let curvature = curvature.map_or(DVec3::ZERO, |circle| (circle.center - points[0]) / circle.radius.powi(2));
+    let tangent = x - curvature.dot(x) / curvature.length_squared().max(f64::MIN_POSITIVE) * curvature;
     // The angle of the quad with the sides h, L₁, λh, L₀: both triangles on the diagonal Q₀P₁, whose other angles are
     // supplementary, give cos α = (h² + L₀² − L₁² − λ²h²) / 2h(L₀ + λL₁).
     let cosine = |lambda: f64| {
@@ -432,7 +267,8 @@ fn fitted_start(points: &[DVec3], start: DVec3, lengths: &[f64]) -> Result<DVec3
     let mut angle = cosine(1.0).acos();
     for _ in 0..20 {
         let direction = angle.cos() * x + angle.sin() * y;
-        let lambda = 1.0 - lengths[0] * curvature.dot(direction) / angle.sin().powi(2);
+        let cosine_squared = direction.dot(tangent).powi(2) / tangent.length_squared();
+        let lambda = 1.0 - lengths[0] * curvature.dot(direction) / (1.0 - cosine_squared);
         angle = cosine(lambda.clamp(0.1, 10.0)).acos();
     }
     // How far the lengths are missed from an angle.
@@ -525,4 +361,225 @@ fn fractions(points: &[DVec3]) -> Result<Vec<f64>> {
         return Err(Error::new(Status::Degenerate, "all points coincide").at("points"));
     }
     Ok(lengths.into_iter().map(|length| length / total).collect())
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use super::*;
+
+    /// The largest distance of a quad's fourth corner from the circle through three, and how many quads are not in cyclic
+    /// order, by angles about the circle's center.
+    pub(in super::super) fn misfit(strip: &Strip) -> (f64, usize) {
+        let (mut worst, mut crossed) = (0.0_f64, 0);
+        for k in 0..strip.guide.len() - 1 {
+            let corners = [strip.guide[k], strip.border[k], strip.border[k + 1], strip.guide[k + 1]];
+            let circle = Circle::through(corners[0], corners[1], corners[3]).unwrap();
+            worst = worst.max(circle.distance(corners[2]) / corners[0].distance(corners[3]));
+            let angles = corners.map(|corner| circle.angle_between(corners[0], corner));
+            let is_in_order = (1..3).all(|i| angles[i] < angles[i + 1]) || (1..3).all(|i| angles[i] > angles[i + 1]);
+            crossed += usize::from(!is_in_order);
+        }
+        (worst, crossed)
+    }
+
+    fn arc(radius: f64, angle: f64) -> DVec3 {
+        radius * DVec3::new(angle.cos(), angle.sin(), 0.0)
+    }
+
+    fn ring(count: usize, from: f64, to: f64) -> Vec<DVec3> {
+        (0..=count).map(|k| arc(3.0, from + (to - from) * k as f64 / count as f64)).collect()
+    }
+
+    pub(in super::super) fn helix(count: usize) -> Vec<DVec3> {
+        let point = |s: f64| DVec3::new(3.0 * s.cos(), 3.0 * s.sin(), 0.8 * s);
+        (0..=count).map(|k| point(2.0 * k as f64 / count as f64)).collect()
+    }
+
+    const STRICT: Options = Options { is_strict: true, projects_lengths: false, fits_start: false };
+
+    #[test]
+    fn constant_lengths_on_a_circle_give_a_concentric_one_inside_and_outside() {
+        for radius in [2.0, 4.0] {
+            for turn in [TAU, -TAU] {
+                let points = ring(24, 0.0, turn);
+                let strip = of_lengths(&points, arc(radius, 0.0), &[1.0; 25], &STRICT).unwrap();
+                for (point, border) in points.iter().zip(&strip.border) {
+                    assert!(border.distance(radius / 3.0 * *point) < 1e-12);
+                    assert!((border.distance(*point) - 1.0).abs() < 1e-12);
+                }
+                assert!(strip.deviation < 1e-12 && strip.flipped.is_empty());
+                let (off_circle, crossed) = misfit(&strip);
+                assert!(off_circle < 1e-12 && crossed == 0);
+            }
+        }
+    }
+
+    #[test]
+    fn at_a_right_angle_the_growth_that_is_possible_vanishes_under_refinement() {
+        // The first circle is Thales' about the hypotenuse Q₀P₁: its diameter is √(1 + h²).
+        for count in [16_i32, 32, 64] {
+            let h = 4.0 / f64::from(count);
+            let points: Vec<DVec3> = (0..=count).map(|k| f64::from(k) * h * DVec3::X).collect();
+            let strip = of_lengths(&points, DVec3::Y, &vec![1.0; points.len()], &STRICT).unwrap();
+            assert!(strip.attainable.iter().all(|largest| (largest - h.hypot(1.0)).abs() < 1e-12));
+        }
+    }
+
+    #[test]
+    fn a_length_that_cannot_be_is_refused_with_the_nearest_that_can() {
+        // The second edge leans backwards, so that the arc from Q₁ to P₂ is more than half of the second circle.
+        let points: Vec<DVec3> = (0..5).map(|k| f64::from(k) * DVec3::X).collect();
+        let start = DVec3::new(-0.3, 1.0, 0.0);
+        let free = of_border_edges(&points, start, &[1.0; 4]).unwrap();
+        let diameter = 2.0 * free.circles().unwrap()[1].radius;
+        let mut lengths = free.lengths.clone();
+        lengths[2] = 1.05 * diameter;
+        let error = of_lengths(&points, start, &lengths, &Options::default()).unwrap_err();
+        assert_eq!((error.status(), error.place()), (Status::NoIntersection, "lengths[2]"));
+        let message = error.to_string();
+        let number = |after: &str| -> f64 {
+            let rest = &message[message.find(after).unwrap() + after.len()..];
+            rest.split([' ', ',', ';']).next().unwrap().parse().unwrap()
+        };
+        for after in ["below ", "the nearest is ", "circle is "] {
+            assert!((number(after) - diameter).abs() < 1e-12, "{message}");
+        }
+        // The diameter itself, also with the last bits of a sum.
+        for factor in [1.0, 1.0 + 1e-13] {
+            lengths[2] = factor * diameter;
+            let strip = of_lengths(&points[..3], start, &lengths[..3], &STRICT).unwrap();
+            let center = free.circles().unwrap()[1].center;
+            assert!(strip.border[2].distance(2.0 * center - points[2]) < 1e-6 && strip.flipped.is_empty());
+        }
+        // The nearest instead: what was achieved is told.
+        lengths[2] = 1.05 * diameter;
+        let project = Options { projects_lengths: true, ..STRICT };
+        let strip = of_lengths(&points, start, &lengths, &project).unwrap();
+        assert_eq!(strip.projected[0], 2);
+        assert!((strip.lengths[2] - diameter).abs() < 1e-12);
+        let largest = strip.lengths.iter().zip(&lengths).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(strip.deviation == largest && largest >= 0.05 * diameter - 1e-12);
+        assert!(misfit(&strip) == (misfit(&strip).0, 0) && misfit(&strip).0 < 1e-10);
+    }
+
+    #[test]
+    fn crossed_quads_are_listed_or_refused() {
+        // From a right angle on, lengths cannot grow beyond the distance of Q₀ from P₁.
+        let points: Vec<DVec3> = (0..3).map(|k| f64::from(k) * DVec3::X).collect();
+        let (start, lengths) = (DVec3::new(0.4, 1.0, 0.0), [1.16_f64.sqrt(), 1.2, 1.0]);
+        let strip = of_lengths(&points, start, &lengths, &Options::default()).unwrap();
+        assert_eq!(strip.flipped, [0]);
+        assert_eq!(misfit(&strip).1, strip.flipped.len());
+        assert!(strip.deviation < 1e-12 && (strip.attainable[0] - 1.36_f64.sqrt()).abs() < 1e-12);
+        let error = of_lengths(&points, start, &lengths, &STRICT).unwrap_err();
+        assert_eq!((error.status(), error.place()), (Status::NoSolution, "lengths[1]"));
+        let project = Options { projects_lengths: true, ..STRICT };
+        let strip = of_lengths(&points, start, &lengths, &project).unwrap();
+        assert!(strip.projected == [1] && strip.flipped.is_empty() && misfit(&strip).1 == 0);
+        assert!((strip.lengths[1] / strip.attainable[0] - 1.0).abs() < 2e-3);
+    }
+
+    #[test]
+    fn the_start_is_turned_to_where_lengths_can_go_on() {
+        let fit = Options { fits_start: true, ..STRICT };
+        // A right angle for constant lengths on a circle, whatever the first guess.
+        for radius in [2.0, 4.0] {
+            let guess = arc(radius, 0.1);
+            let strip = of_lengths(&ring(24, 0.0, 3.0), guess, &[1.0; 25], &fit).unwrap();
+            assert!(strip.border.iter().all(|border| (border.length() - radius).abs() < 1e-10));
+        }
+        // Isosceles trapezoids on a straight guide, whatever the growth: cos α = −L'/2.
+        for growth in [-0.2, 0.2] {
+            let points: Vec<DVec3> = (0..=16).map(|k| f64::from(k) / 4.0 * DVec3::X).collect();
+            let lengths = lengths_between(&points, 1.0, 1.0 + 4.0 * growth).unwrap();
+            let strip = of_lengths(&points[..6], DVec3::Y, &lengths[..6], &fit).unwrap();
+            for (point, border) in points.iter().zip(&strip.border) {
+                assert!(((*border - *point).normalize().x + 0.5 * growth).abs() < 1e-9);
+            }
+        }
+        // In space, shrinking; growing a little, where errors grow.
+        for (first, last, count) in [(1.0, 0.6, 16), (1.0, 0.6, 64), (1.0, 1.3, 12)] {
+            let points = helix(count);
+            let lengths = lengths_between(&points, first, last).unwrap();
+            let strip = of_lengths(&points, 1.4 * points[0] + 0.2 * DVec3::Y, &lengths, &fit).unwrap();
+            assert!(strip.deviation < 1e-12 && misfit(&strip).1 == 0, "{count}");
+            assert!(misfit(&strip).0 < 1e-12, "{}", misfit(&strip).0);
+        }
+    }
+
+    #[test]
+    fn radii_and_border_edges_of_a_strip_give_it_back() {
+        let points = helix(16);
+        let start = 1.3 * points[0] + 0.1 * DVec3::Z;
+        let wave: Vec<f64> = (0..16).map(|k| 0.1 * (3.0 * PI * f64::from(k) / 16.0).sin() + 0.17).collect();
+        let strip = of_border_edges(&points, start, &wave).unwrap();
+        for (pair, length) in strip.border.windows(2).zip(&wave) {
+            assert!((pair[0].distance(pair[1]) - length).abs() < 1e-12);
+        }
+        assert!(misfit(&strip).0 < 1e-12 && misfit(&strip).1 == 0);
+        let radii: Vec<f64> = strip.circles().unwrap().iter().map(|circle| circle.radius).collect();
+        let again = of_radii(&points, start, &radii, true).unwrap();
+        let found: Vec<f64> = again.circles().unwrap().iter().map(|circle| circle.radius).collect();
+        assert!(found.iter().zip(&radii).all(|(found, radius)| (found - radius).abs() < 1e-10));
+        assert!(misfit(&again).0 < 1e-10 && misfit(&again).1 == 0);
+        assert!((again.lengths[15] - again.lengths[16]).abs() < 1e-12);
+        let same = again.border[..16].iter().zip(&strip.border).filter(|(a, b)| a.distance(**b) < 1e-9).count();
+        assert_eq!(same, 16);
+        let edges = edges_of_border(&points, 4.0).unwrap();
+        let strip = of_border_edges(&points, start, &edges).unwrap();
+        let total: f64 = strip.border.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        assert!((total - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn radii_are_refused_with_what_is_attainable() {
+        let points = ring(8, 0.0, 2.0);
+        let start = arc(4.0, 0.0);
+        let radii = of_lengths(&points, start, &[1.0; 9], &STRICT).unwrap();
+        let mut radii: Vec<f64> = radii.circles().unwrap().iter().map(|circle| circle.radius).collect();
+        // The circles are about points between both rings: of_radii finds the same strip.
+        let strip = of_radii(&points, start, &radii, true).unwrap();
+        assert!(strip.border.iter().all(|border| (border.length() - 4.0).abs() < 1e-9));
+        radii[3] = 0.1;
+        let error = of_radii(&points, start, &radii, false).unwrap_err();
+        assert_eq!((error.status(), error.place()), (Status::NoIntersection, "radii[3]"));
+        // What it says is attainable is: the lower end of the interval.
+        let message = error.to_string();
+        let nearest: f64 = message.rsplit(' ').next().unwrap().parse().unwrap();
+        let half_edge = 0.5 * points[3].distance(points[4]);
+        assert!(nearest >= half_edge, "{message}");
+        radii[3] = nearest * (1.0 + 1e-9);
+        assert!(of_radii(&points[..5], start, &radii[..4], true).is_ok());
+        radii[3] = nearest * (1.0 - 1e-3);
+        assert!(of_radii(&points[..5], start, &radii[..4], true).is_err());
+        assert_eq!(of_radii(&points, start, &[0.1; 8], false).unwrap_err().place(), "radii[0]");
+    }
+
+    #[test]
+    fn input_that_is_no_strip_is_named() {
+        let points = helix(3);
+        let start = 1.2 * points[0];
+        let place = |points: &[DVec3], start: DVec3, lengths: &[f64]| {
+            let error = of_lengths(points, start, lengths, &Options::default()).unwrap_err();
+            (error.status(), error.place().to_string())
+        };
+        let length = start.distance(points[0]);
+        let case = |status, place: &str| (status, place.to_string());
+        assert_eq!(place(&points[..1], start, &[length]), case(Status::InvalidArgumentLength, "points"));
+        assert_eq!(place(&points, start, &[length; 3]), case(Status::InvalidArgumentLength, "lengths"));
+        assert_eq!(place(&points, start, &[length, 1.0, -1.0, 1.0]), case(Status::InvalidValue, "lengths[2]"));
+        assert_eq!(place(&points, start, &[length, f64::NAN, 1.0, 1.0]), case(Status::InvalidValue, "lengths[1]"));
+        assert_eq!(place(&points, start, &[1.1 * length; 4]), case(Status::InvalidValue, "lengths[0]"));
+        assert_eq!(place(&points, DVec3::NAN, &[length; 4]), case(Status::InvalidValue, "start"));
+        let on_line = points[0].lerp(points[1], 0.3);
+        let lengths = [on_line.distance(points[0]), 1.0, 1.0, 1.0];
+        assert_eq!(place(&points, on_line, &lengths), case(Status::Degenerate, "start"));
+        let twice = [points[0], points[1], points[1], points[2]];
+        assert_eq!(place(&twice, start, &[length; 4]), case(Status::Degenerate, "points[2]"));
+        let error = of_border_edges(&points, start, &[0.5, 100.0, 0.5]).unwrap_err();
+        assert_eq!((error.status(), error.place()), (Status::NoIntersection, "edges[1]"));
+        assert!(lengths_between(&[DVec3::X; 3], 1.0, 2.0).is_err() && edges_of_border(&points, f64::NAN).is_err());
+    }
 }
