@@ -6,3 +6,4 @@ pub mod frame;
 pub mod inversion;
 mod quad;
 pub mod strip;
+pub mod strip_of_circles;
