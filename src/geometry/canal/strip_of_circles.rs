@@ -10,7 +10,8 @@
 //!
 //! **Where they meet.** Circles that meet in two points are on one sphere or in one plane. Drawn in a plane, overlapping circles do;
 //! drawn in space they rarely do. Then the line in which the planes of two consecutive circles meet crosses either circle in
-//! two points, and the means of these are the ends of a crossing edge. The guide goes through the means on its side as they are; on
+//! two points, and the means of these are the ends of a crossing edge; or where both would meet if drawn in the plane halfway
+//! between theirs, if that is nearer to both circles. The guide goes through the means on its side as they are; on
 //! the other side each point is the one on its quad's circle, and in cyclic order there, that is nearest to the mean. The strip is
 //! circular, not quite the circles drawn; how far its points are from them is told.
 
@@ -21,12 +22,11 @@ use crate::error::{Error, Result, Status};
 use crate::geometry::circle::Circle;
 use crate::mesh::grid::check_finite;
 
-/// Sine of the angle of two planes below which circles in them count as drawn in one plane, and the distance of the planes over the
-/// circles' radii at most.
-const ONE_PLANE: f64 = 1e-9;
-
-/// Distance of what two circles meet their common line in, over their radii, up to which they meet each other.
+/// Distance of a point from two circles, over the larger radius, up to which they meet there: round-off.
 const MEETING: f64 = 1e-12;
+
+/// Distance over the smaller radius beyond which they do not even nearly meet.
+const TOO_FAR: f64 = 0.2;
 
 /// Part of the arc from `Q_k` to `P_{k+1}` that a point keeps away from both ends.
 const LEAST_ARC: f64 = 1e-3;
@@ -49,7 +49,7 @@ pub struct StripOfCircles {
 ///
 /// # Errors
 /// Fewer than 2 circles, a number that is not finite, a radius or a normal that is not above 0 or a unit vector. Status
-/// `NoIntersection`: a circle does not meet the plane of the next, or the other way round; `Degenerate`: `start` or `end` is in the
+/// `NoIntersection`: a circle does not meet the next, not even nearly; `Degenerate`: `start` or `end` is in the
 /// middle between both ends of the next edge, or crossing edges have a common end. The place is `circles[i]`, `start` or `end`.
 pub fn from_circles(circles: &[Circle], start: Option<DVec3>, end: Option<DVec3>) -> Result<StripOfCircles> {
     if circles.len() < 2 {
@@ -67,7 +67,7 @@ pub fn from_circles(circles: &[Circle], start: Option<DVec3>, end: Option<DVec3>
     let mut gap = 0.0_f64;
     for i in 1..count {
         let Some((edge, apart)) = crossing(&circles[i - 1], &circles[i]) else {
-            let reason = format!("it and circles[{}] do not meet in two points, nor each the other's plane", i - 1);
+            let reason = format!("it and circles[{}] do not meet in two points, nor nearly", i - 1);
             return Err(Error::new(Status::NoIntersection, reason).at(format!("circles[{i}]")));
         };
         edges.push(edge);
@@ -122,25 +122,18 @@ pub(super) fn check_circle(circle: &Circle) -> Result<()> {
     Err(Error::new(Status::InvalidValue, reason))
 }
 
-/// Where two circles meet, in either order, and how far apart what is averaged is.
+/// Where two circles meet, or nearly, in either order; and the largest distance of the two points from either circle.
 fn crossing(a: &Circle, b: &Circle) -> Option<([DVec3; 2], f64)> {
-    let offset = b.center - a.center;
-    let along = a.normal.cross(b.normal);
-    if along.length() <= ONE_PLANE {
-        // In one plane: the common chord is x = (d² + R² − R'²) / 2d from the center of `a`.
-        let height = offset.dot(a.normal);
-        let across = offset - height * a.normal;
-        let distance = across.length();
-        if height.abs() > ONE_PLANE * (a.radius + b.radius) || !(distance > 0.0) {
-            return None;
-        }
-        let x = 0.5 * (distance + (a.radius - b.radius) * (a.radius + b.radius) / distance);
-        let squared = (a.radius - x) * (a.radius + x);
-        let half = a.normal.cross(across / distance) * squared.max(0.0).sqrt();
-        let middle = a.center + x / distance * across;
-        return (squared > 0.0).then_some(([middle - half, middle + half], 0.0));
-    }
-    let along = along.normalize();
+    let gap = |points: &[DVec3; 2]| points.map(|p| a.distance(p).max(b.distance(p))).into_iter().fold(0.0, f64::max);
+    let found =
+        [crossing_on_line(a, b), crossing_in_plane(a, b)].into_iter().flatten().map(|points| (points, gap(&points)));
+    let best = found.min_by(|(_, gap), (_, other)| gap.total_cmp(other));
+    best.filter(|(_, gap)| *gap <= TOO_FAR * a.radius.min(b.radius))
+}
+
+/// The means of where both circles cross the line in which their planes meet.
+fn crossing_on_line(a: &Circle, b: &Circle) -> Option<[DVec3; 2]> {
+    let along = a.normal.cross(b.normal).try_normalize()?;
     // The foot of a center on the line: in its own plane, at a right angle to the line.
     let chord = |circle: &Circle, other: &Circle| {
         let aside = along.cross(circle.normal);
@@ -150,8 +143,23 @@ fn crossing(a: &Circle, b: &Circle) -> Option<([DVec3; 2], f64)> {
         (squared > 0.0).then_some([foot - half, foot + half])
     };
     let (on_a, on_b) = (chord(a, b)?, chord(b, a)?);
-    let apart = on_a[0].distance(on_b[0]).max(on_a[1].distance(on_b[1]));
-    Some(([0.5 * (on_a[0] + on_b[0]), 0.5 * (on_a[1] + on_b[1])], apart))
+    Some([0, 1].map(|i| on_a[i].midpoint(on_b[i])))
+}
+
+/// Where the circles would meet if both were in the plane halfway between theirs: their chord is `x = (d² + R² − R'²) / 2d` from
+/// the center of `a`.
+fn crossing_in_plane(a: &Circle, b: &Circle) -> Option<[DVec3; 2]> {
+    let normal = a.normal + a.normal.dot(b.normal).signum() * b.normal;
+    let normal = normal.try_normalize()?;
+    let offset = b.center - a.center;
+    let height = offset.dot(normal);
+    let across = offset - height * normal;
+    let distance = across.length();
+    let x = 0.5 * (distance + (a.radius - b.radius) * (a.radius + b.radius) / distance);
+    let squared = (a.radius - x) * (a.radius + x);
+    let half = normal.cross(across / distance) * squared.max(0.0).sqrt();
+    let middle = a.center + 0.5 * height * normal + x / distance * across;
+    (squared > 0.0).then_some([middle - half, middle + half])
 }
 
 /// The next edge with the end on the guide's side first: so that `P, Q, Q', P'` are in cyclic order on the circle; and whether no
@@ -267,8 +275,7 @@ mod tests {
             assert!(found.strip.border[k].distance(strip.border[k]) < 1e-9);
         }
         assert!(found.strip.guide[0] == strip.guide[0] || found.strip.guide[0].distance(strip.guide[0]) < 1e-12);
-        // Disturbed, they no longer meet: the strip is circular all the same, and near. Planes of neighbours are at small angles
-        // to each other, so that the lines in which they meet move by a multiple of what the circles do.
+        // Disturbed, they no longer meet: the strip is circular all the same, and near.
         let mut random = Random(4);
         for amount in [1e-5, 1e-4, 1e-3] {
             let disturb = |circle: &Circle| Circle {
