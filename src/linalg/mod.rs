@@ -1,5 +1,6 @@
 //! Linear algebra: the sparse system of the global step, and closed forms in two and three dimensions.
 
+pub mod bfgs;
 pub mod cholesky;
 pub mod conjugate_gradients;
 pub mod dense;

@@ -15,3 +15,6 @@ pub mod parallel;
 pub mod patch;
 pub mod quality;
 pub mod surface;
+mod quad;
+pub mod strip;
+pub mod strip_of_circles;
