@@ -129,7 +129,7 @@ pub fn frames(grid: &Grid, frame: Frame) -> Result<Vec<Frame>> {
 }
 
 /// Along row 0 and down the columns, unchecked.
-fn handed_on(grid: &Grid, frame: Frame) -> Vec<Frame> {
+pub(super) fn handed_on(grid: &Grid, frame: Frame) -> Vec<Frame> {
     let mut frames = Vec::with_capacity(grid.points().len());
     frames.push(frame);
     for j in 1..grid.columns() {

@@ -10,7 +10,7 @@
 //! These are three equations for two forces: on most surfaces they have no solution. On canal surfaces they do. The paper says so
 //! of C-canal surfaces too, and that is not right as it stands: a cylinder over a curve is a limit of one, and there the second
 //! equation makes the hoop force constant around the curve, the third makes it `p / κ₂`; so the curve must be a circle. Tests show
-//! both. Where a net is open, edges can be loaded, and solutions are not unique.
+//! both. Solutions need not be unique: the edges of an open net can be loaded.
 //!
 //! Here `N₁` and `N₂` are unknowns of each face of a net, lengths `A` are those of arcs, curvatures those of the arcs in the
 //! direction of the normal; the first two equations belong to edges between faces. All are solved by least squares, each weighted by
@@ -23,18 +23,6 @@ use super::net::Net;
 use crate::error::{Error, Result, Status, finite};
 use crate::linalg::least_squares::LeastSquares;
 
-/// Forces per length in both directions, and how well they balance the pressure.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Membrane {
-    /// Along direction 1, one per face in the order of [`Grid::quads`](crate::mesh::Grid::quads), above 0 for tension under a
-    /// pressure along the normal.
-    pub forces_one: Vec<f64>,
-    /// Along direction 2.
-    pub forces_two: Vec<f64>,
-    /// The root of the area's mean of the squared residuals over the pressure: 0 in equilibrium.
-    pub residual: f64,
-}
-
 /// The mean geometry of a face.
 struct Cell {
     /// Arc lengths in direction 1 and 2.
@@ -44,26 +32,26 @@ struct Cell {
     curvatures: [f64; 2],
 }
 
-/// The forces of a net under `pressure` along its normals, in force per area; of several solutions the one of least forces.
+/// How near any forces come to equilibrium under pressure along the normals: the root of the area's mean of the squared residuals
+/// over the pressure, for the forces of least squares. 0: lines of curvature can be lines of principal stress; 1: no force carries
+/// anything.
 ///
 /// # Errors
-/// `pressure` is 0 or not finite. Status `Degenerate`: an arc of a face runs through infinity; the place is `faces[i]`.
-pub fn membrane(net: &Net, pressure: f64) -> Result<Membrane> {
-    check_pressure(pressure)?;
+/// Status `Degenerate`: an arc of a face runs through infinity; the place is `faces[i]`.
+pub fn least_residual(net: &Net) -> Result<f64> {
     let equations = equations(net)?;
-    let unknowns = equations.solve()?;
-    let residual = norm(&equations.residuals(&unknowns));
-    let unit = pressure * net.grid().diagonal();
-    let forces = |first: usize| unknowns[first..].iter().step_by(2).map(|force| unit * force).collect();
-    Ok(Membrane { forces_one: forces(0), forces_two: forces(1), residual })
+    Ok(norm(&equations.residuals(&equations.solve()?)))
 }
 
-/// How far given forces are from equilibrium: the residual of [`Membrane`] for them.
+/// How far given forces are from equilibrium, measured as in [`least_residual`]: forces per length in direction 1 and 2, one per face
+/// in the order of [`Grid::quads`](crate::mesh::Grid::quads), above 0 for tension under a pressure along the normal.
 ///
 /// # Errors
-/// As [`membrane`], or other numbers of forces than of faces.
+/// As [`least_residual`]; `pressure` is 0 or not finite, or there are other numbers of forces than of faces.
 pub fn residual_of(net: &Net, pressure: f64, forces_one: &[f64], forces_two: &[f64]) -> Result<f64> {
-    check_pressure(pressure)?;
+    if finite("pressure", pressure)? == 0.0 {
+        return Err(Error::new(Status::InvalidValue, "expected a pressure other than 0, found 0").at("pressure"));
+    }
     let [rows, columns] = net.grid().spans();
     check_count("forces_one", forces_one, rows * columns)?;
     check_count("forces_two", forces_two, rows * columns)?;
@@ -71,13 +59,6 @@ pub fn residual_of(net: &Net, pressure: f64, forces_one: &[f64], forces_two: &[f
     let unknowns: Vec<f64> =
         forces_one.iter().zip(forces_two).flat_map(|(one, two)| [one / unit, two / unit]).collect();
     Ok(norm(&equations(net)?.residuals(&unknowns)))
-}
-
-fn check_pressure(pressure: f64) -> Result<()> {
-    if finite("pressure", pressure)? == 0.0 {
-        return Err(Error::new(Status::InvalidValue, "expected a pressure other than 0, found 0").at("pressure"));
-    }
-    Ok(())
 }
 
 fn norm(residuals: &[f64]) -> f64 {
@@ -186,25 +167,25 @@ mod tests {
         let forces = vec![0.5 * pressure * radius; 48 * 60];
         let residual = residual_of(&net, pressure, &forces, &forces).unwrap();
         assert!(residual < 1e-3, "{residual}");
-        let solved = membrane(&net, pressure).unwrap();
-        assert!(solved.residual < residual + 1e-6, "{} {residual}", solved.residual);
-
         let (ring, tube, columns) = (3.0, 0.8, 160);
         let angle = |j: f64| TAU * j / columns as f64;
         let meridian = |j: usize| (ring + tube * angle(j as f64).cos(), tube * angle(j as f64).sin());
         let grid = revolution(meridian, 48, columns, [true, true]);
         let net = Net::new(grid, Frame::of_tangent_one(DVec3::Y, DVec3::X).unwrap()).unwrap();
-        let torus = membrane(&net, pressure).unwrap();
-        for i in 0..48 {
-            for j in 0..columns {
-                let k = i * columns + j;
-                // Around the tube: p r (2R + r cos φ) / 2 (R + r cos φ); along the ring: p r / 2.
-                let cosine = angle(j as f64 + 0.5).cos();
-                let around = 0.5 * pressure * tube * (2.0 * ring + tube * cosine) / (ring + tube * cosine);
-                assert!((torus.forces_one[k] / (0.5 * pressure * tube) - 1.0).abs() < 1e-3, "{}", torus.forces_one[k]);
-                assert!((torus.forces_two[k] / around - 1.0).abs() < 1e-3, "{}", torus.forces_two[k] / around);
-            }
-        }
+        // Around the tube: p r (2R + r cos φ) / 2 (R + r cos φ); along the ring: p r / 2.
+        let around = |k: usize| {
+            let cosine = angle((k % columns) as f64 + 0.5).cos();
+            0.5 * pressure * tube * (2.0 * ring + tube * cosine) / (ring + tube * cosine)
+        };
+        let forces_one = vec![0.5 * pressure * tube; 48 * columns];
+        let forces_two: Vec<f64> = (0..48 * columns).map(around).collect();
+        let residual = residual_of(&net, pressure, &forces_one, &forces_two).unwrap();
+        assert!(residual < 1e-3, "{residual}");
+        assert!(least_residual(&net).unwrap() < 1e-6);
+        // Forces that are wrong by a tenth, or in the wrong direction, are found out.
+        let heavier: Vec<f64> = forces_two.iter().map(|force| 1.1 * force).collect();
+        assert!(residual_of(&net, pressure, &forces_one, &heavier).unwrap() > 0.05);
+        assert!(residual_of(&net, pressure, &forces_two, &forces_one).unwrap() > 0.05);
     }
 
     #[test]
@@ -212,7 +193,7 @@ mod tests {
         let mut random = Random(3);
         let mut surface = SuperCanal::new(Cyclide::new().net([0.2, 2.0], [-0.5, 1.2], 5, 5), Base::Canal);
         let residuals = |surface: &SuperCanal| {
-            [2, 4, 8].map(|pieces| membrane(&surface.refined(pieces, pieces).unwrap(), 1.0).unwrap().residual)
+            [2, 4, 8].map(|pieces| least_residual(&surface.refined(pieces, pieces).unwrap()).unwrap())
         };
         let canal = residuals(&surface);
         assert!(canal[0] < 1e-4 && canal[1] < 0.3 * canal[0] && canal[2] < 0.3 * canal[1], "{canal:?}");
@@ -234,15 +215,17 @@ mod tests {
             };
             let grid = Grid::new((0..5 * 41).map(point).collect(), 5, 41, [false; 2]).unwrap();
             let net = Net::new(grid, Frame::of_tangent_one(DVec3::Y, DVec3::X).unwrap()).unwrap();
-            membrane(&net, 1.0).unwrap().residual
+            least_residual(&net).unwrap()
         };
         assert!(residual(1.0) < 1e-6 && residual(0.7) > 0.05, "{} {}", residual(1.0), residual(0.7));
     }
 
     #[test]
-    fn no_pressure_is_refused() {
+    fn what_does_not_fit_is_refused() {
         let net = Cyclide::new().net([0.2, 1.0], [-0.5, 1.2], 3, 3);
-        assert_eq!(membrane(&net, 0.0).unwrap_err().place(), "pressure");
-        assert!(membrane(&net, f64::NAN).is_err());
+        let place = |pressure: f64, count: usize| {
+            residual_of(&net, pressure, &vec![1.0; count], &[1.0; 4]).unwrap_err().place().to_owned()
+        };
+        assert_eq!([place(0.0, 4), place(f64::NAN, 4), place(1.0, 3)], ["pressure", "pressure", "forces_one"]);
     }
 }

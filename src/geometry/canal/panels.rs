@@ -93,7 +93,7 @@ impl Panel {
 }
 
 /// Refuses axes that do not belong to a grid's points.
-fn check_axes(grid: &Grid, axes: &[DVec3]) -> Result<()> {
+pub(super) fn check_axes(grid: &Grid, axes: &[DVec3]) -> Result<()> {
     if axes.len() != grid.points().len() {
         let reason = format!("expected one for each of {} points, found {}", grid.points().len(), axes.len());
         return Err(Error::new(Status::InvalidArgumentLength, reason).at("axes"));
