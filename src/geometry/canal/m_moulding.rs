@@ -158,3 +158,161 @@ fn is_upright(rail: &[DVec3], normal: DVec3) -> bool {
     rail.iter().all(|&point| plane.height(point).abs() <= COINCIDE * extent)
         && plane.normal.dot(normal).abs() <= COINCIDE
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bases::off_circle;
+    use super::super::frame::frames;
+    use super::super::m_revolution::m_revolution;
+    use super::super::m_revolution::tests::{placed, sample};
+    use super::*;
+    use crate::geometry::random::Random;
+
+    /// A rail in the upright plane through the ends of a chord: a half ellipse of the given height, which leaves the ground
+    /// orthogonally at both, leaning by `skew`, in space if `bend` is not 0.
+    fn arch(from: DVec3, to: DVec3, height: f64, skew: f64, bend: f64, count: i32) -> Vec<DVec3> {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (from - to));
+        let side = half.cross(DVec3::Z);
+        let at = |i: i32| std::f64::consts::PI * f64::from(i) / f64::from(count);
+        let point = |i: i32| {
+            let (sine, cosine) = at(i).sin_cos();
+            let lean = skew * sine * sine;
+            match i {
+                0 => from,
+                i if i == count => to,
+                _ => middle + (cosine + lean) * half + height * sine * DVec3::Z + bend * sine * sine * side,
+            }
+        };
+        (0..=count).map(point).collect()
+    }
+
+    fn check(surface: &MMoulding, curve: &[DVec3], rail: &[DVec3]) {
+        let grid = surface.image.grid().unwrap();
+        assert!(off_circle(&grid) < 1e-10, "{}", off_circle(&grid));
+        assert!(off_circle(&surface.image.base.grid) < 1e-10);
+        frames(&grid, surface.image.frame()).unwrap();
+        frames(&surface.image.base.grid, surface.image.base.frame).unwrap();
+        let distance = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        assert_eq!((grid.rows(), grid.columns()), (curve.len(), rail.len()));
+        assert!(distance(&grid.column(0), curve) < 1e-12);
+        assert!(distance(grid.row(0), rail) < 1e-12);
+    }
+
+    #[test]
+    fn with_an_arch_of_a_circle_it_is_the_surface_of_revolution() {
+        let (curve, p2, p3) = sample(11);
+        let mut random = Random(41);
+        for center in [Center::Middle, Center::Angle(0.4), Center::Angle(-2.0)] {
+            let place = placed(&mut random);
+            let curve: Vec<DVec3> = curve.iter().map(|&point| place(point)).collect();
+            let (p2, p3, up) = (place(p2), place(p3), place(DVec3::Z) - place(DVec3::ZERO));
+            let revolved = m_revolution(&curve, p2, p3, center, up, 8).unwrap();
+            let expected = revolved.image.grid().unwrap();
+            let surface = m_moulding(&curve, expected.row(0), MouldingCenter::Corner { p3, center }).unwrap();
+            check(&surface, &curve, expected.row(0));
+            let grid = surface.image.grid().unwrap();
+            for (a, b) in grid.points().iter().zip(expected.points()) {
+                assert!(a.distance(*b) < 1e-10, "{}", a.distance(*b));
+            }
+            assert!(surface.image.frame().distance(&revolved.image.frame()) < 1e-9);
+            assert!(surface.is_moulding && surface.corner_gap.unwrap() < 1e-10 && surface.obliquity_rad < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_rail_over_the_chord_gives_a_moulding_surface_that_ends_in_the_far_corner() {
+        let (curve, p2, p3) = sample(11);
+        let build = |count: i32| {
+            let rail = arch(curve[0], p2, 0.7, 0.3, 0.0, count);
+            let surface = m_moulding(&curve, &rail, MouldingCenter::Chord { p3 }).unwrap();
+            check(&surface, &curve, &rail);
+            assert!(surface.is_moulding && surface.reversed_count == 0);
+            // Both families of the base are planar: rows parallel to the rail's plane, columns upright to it.
+            let base = &surface.image.base.grid;
+            let normal = plane_normal("row", base.row(0)).unwrap();
+            for i in 0..base.rows() {
+                let heights = base.row(i).iter().map(|&point| (point - base.at(i, 0)).dot(normal).abs());
+                assert!(heights.fold(0.0, f64::max) < 1e-11);
+            }
+            for j in 0..base.columns() {
+                let column_normal = plane_normal("column", &base.column(j)).unwrap();
+                assert!(column_normal.dot(normal).abs() < 1e-11);
+            }
+            surface.corner_gap.unwrap()
+        };
+        // The curve's tangent turns by half a revolution, the polyline's only in the limit: second order.
+        let gaps = [10, 20, 40].map(build);
+        assert!(gaps[0] < 0.2 && gaps[1] < 0.4 * gaps[0] && gaps[2] < 0.4 * gaps[1], "{gaps:?}");
+    }
+
+    #[test]
+    fn a_rail_in_space_and_any_center_give_a_monge_surface() {
+        let (curve, p2, p3) = sample(11);
+        let rail = arch(curve[0], p2, 0.7, 0.3, 0.4, 16);
+        for center in [
+            MouldingCenter::At(DVec3::new(0.1, -2.0, 0.0)),
+            MouldingCenter::At(DVec3::new(-0.2, -0.4, 0.0)),
+            MouldingCenter::Corner { p3, center: Center::Angle(-0.6) },
+            MouldingCenter::Chord { p3 },
+        ] {
+            let surface = m_moulding(&curve, &rail, center).unwrap();
+            check(&surface, &curve, &rail);
+            assert!(!surface.is_moulding);
+            assert_eq!(surface.corner_gap.is_none(), matches!(center, MouldingCenter::At(_)));
+        }
+        // Unlike an M-revolution surface, this one depends on the center.
+        let far = |y: f64| {
+            let surface = m_moulding(&curve, &rail, MouldingCenter::At(DVec3::new(0.1, y, 0.0))).unwrap();
+            surface.image.grid().unwrap().at(10, 8)
+        };
+        assert!(far(-2.0).distance(far(-3.0)) > 1e-3);
+    }
+
+    #[test]
+    fn an_isosceles_trapezoid_takes_the_curves_as_they_are() {
+        let curve: Vec<DVec3> =
+            [(-2.0, 0.0), (-3.0, 0.5), (-2.5, 1.2), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+        let (p2, p3) = (2.0 * DVec3::X, DVec3::new(1.0, 1.0, 0.0));
+        let rail = arch(curve[0], p2, 1.5, 0.0, 0.0, 12);
+        let surface = m_moulding(&curve, &rail, MouldingCenter::Chord { p3 }).unwrap();
+        assert!(surface.image.inversions.is_empty() && surface.is_moulding);
+        // A symmetric rail: the mirror images end in the corner to rounding.
+        assert!(surface.corner_gap.unwrap() < 1e-12);
+        let expected = super::super::bases::moulding(&rail, &curve).unwrap().base.transposed().unwrap();
+        assert!(surface.image.base == expected);
+    }
+
+    #[test]
+    fn curves_that_do_not_fit_are_refused_by_name() {
+        let (curve, p2, p3) = sample(11);
+        let rail = arch(curve[0], p2, 0.7, 0.3, 0.0, 8);
+        let refusal = |curve: &[DVec3], rail: &[DVec3], center| {
+            let error = m_moulding(curve, rail, center).unwrap_err();
+            (error.status(), error.place().to_owned())
+        };
+        let named = |status, place: &str| (status, place.to_owned());
+        let chord = MouldingCenter::Chord { p3 };
+        let mut bent = curve.clone();
+        bent[5].z = 1e-3;
+        assert_eq!(refusal(&bent, &rail, chord).0, Status::NotPlanar);
+        let away: Vec<DVec3> = rail.iter().map(|&point| point + 0.1 * DVec3::X).collect();
+        assert_eq!(refusal(&curve, &away, chord), named(Status::InvalidValue, "rail[0]"));
+        assert_eq!(refusal(&curve, &rail[..5], chord).0, Status::NotCircular);
+        assert_eq!(refusal(&curve, &rail[..1], chord), named(Status::InvalidArgumentLength, "rail"));
+        let at = MouldingCenter::At;
+        assert_eq!(refusal(&curve, &rail, at(DVec3::Z)), named(Status::InvalidValue, "center"));
+        assert_eq!(refusal(&curve, &rail, at(DVec3::NAN)), named(Status::InvalidValue, "center"));
+        assert_eq!(refusal(&curve, &rail, at(curve[4])), named(Status::Degenerate, "curve[4]"));
+        assert_eq!(refusal(&curve, &rail, at(curve[0])), named(Status::Degenerate, "curve[0]"));
+        assert_eq!(refusal(&curve, &rail, at(rail[8])), named(Status::Degenerate, "rail[8]"));
+        let flat = [curve[0], curve[0] + DVec3::Y, p2];
+        assert_eq!(refusal(&curve, &flat, chord), named(Status::Degenerate, "rail[1]"));
+        // A whole circle upright to the curve's plane: its end P2 is P1 again.
+        let ring: Vec<DVec3> = crate::mesh::fit::regular_polygon(9)
+            .iter()
+            .map(|&point| curve[0] + DVec3::new(point.x - 1.0, 0.0, point.y))
+            .chain([curve[0]])
+            .collect();
+        assert_eq!(refusal(&curve, &ring, chord).0, Status::Degenerate);
+    }
+}

@@ -144,3 +144,206 @@ pub(super) fn named(name: &str, error: Error) -> Error {
         None => error,
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use glam::{DMat3, DVec2};
+
+    use super::*;
+    use crate::geometry::canal::bases::off_circle;
+    use crate::geometry::canal::frame::frames;
+    use crate::geometry::canal::inversion::GeneralCircle;
+    use crate::geometry::circle::Circle;
+    use crate::geometry::random::Random;
+
+    /// A curve in the xy-plane from the direction −20° to 200° on the unit circle, outside of it, and two points between.
+    pub fn sample(count: i32) -> (Vec<DVec3>, DVec3, DVec3) {
+        let at = |degrees: f64| DVec2::from_angle(degrees.to_radians());
+        let curve = (0..count).map(|i| {
+            let s = f64::from(i) / f64::from(count - 1);
+            let bump = 1.0 + s * (1.0 - s) * (1.5 + 0.8 * (5.0 * s).sin());
+            (bump * at(200.0 - 220.0 * s)).extend(0.0)
+        });
+        (curve.collect(), at(225.0).extend(0.0), at(300.0).extend(0.0))
+    }
+
+    /// Any rotation, and a shift.
+    pub fn placed(random: &mut Random) -> impl Fn(DVec3) -> DVec3 + Copy + use<> {
+        let x = random.vector().normalize();
+        let y = random.vector().reject_from_normalized(x).normalize();
+        let (turn, shift) = (DMat3::from_cols(x, y, x.cross(y)), random.vector());
+        move |point| turn * point + shift
+    }
+
+    fn farthest(a: &[DVec3], b: &[DVec3]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn the_surface_is_circular_and_has_upright_arches_between_the_given_points() {
+        let (curve, p2, p3) = sample(23);
+        for center in
+            [Center::Middle, Center::Angle(0.4), Center::Angle(-2.5), Center::Ratio { ratio: 1.5, is_inside: true }]
+        {
+            let surface = m_revolution(&curve, p2, p3, center, DVec3::Z, 9).unwrap();
+            let grid = surface.image.grid().unwrap();
+            assert_eq!((grid.rows(), grid.columns(), grid.wraps()), (23, 9, [false; 2]));
+            assert!(off_circle(&grid) < 1e-10, "{}", off_circle(&grid));
+            assert!(off_circle(&surface.image.base.grid) < 1e-10);
+            frames(&grid, surface.image.frame()).unwrap();
+            frames(&surface.image.base.grid, surface.image.base.frame).unwrap();
+            assert!(farthest(&grid.column(0), &curve) < 1e-12);
+            assert!(grid.at(0, 8).distance(p2) < 1e-12 && grid.at(22, 8).distance(p3) < 1e-12);
+            for i in 0..23 {
+                // A circle in a vertical plane whose diameter joins the ends, above the ground.
+                let (first, last) = (grid.at(i, 0), grid.at(i, 8));
+                let circle = Circle::through(first, grid.at(i, 4), last).unwrap();
+                assert!(circle.normal.z.abs() < 1e-10, "{}", circle.normal.z);
+                assert!(circle.center.distance(0.5 * (first + last)) < 1e-10);
+                for point in grid.row(i) {
+                    assert!(circle.distance(*point) < 1e-10 && point.z > -1e-12);
+                }
+                assert!(grid.at(i, 4).z > 0.1);
+            }
+            // The tangent of the first arch is upright.
+            assert!(surface.image.frame().t2.distance(DVec3::Z) < 1e-10);
+        }
+    }
+
+    #[test]
+    fn every_center_gives_the_same_surface() {
+        let (curve, p2, p3) = sample(9);
+        let mut random = Random(31);
+        let reference = m_revolution(&curve, p2, p3, Center::Middle, DVec3::Z, 8).unwrap();
+        let expected = reference.image.grid().unwrap();
+        // And that surface is the Möbius rotation about the circle of centers: mirroring in it turns an arch round.
+        let GeneralCircle::Circle(k) = reference.corners.circle_of_centers() else { panic!("a line") };
+        let swap = Inversion::new(k.center, k.radius * k.radius).unwrap();
+        for i in 0..9 {
+            let mirrored = swap.points(expected.row(i)).unwrap();
+            let turned: Vec<DVec3> = expected.row(i).iter().rev().copied().collect();
+            assert!(farthest(&mirrored, &turned) < 1e-12);
+        }
+        for _ in 0..40 {
+            let omega = random.between(-PI, PI);
+            if (omega.abs() - 0.5 * PI).abs() < 0.1 {
+                continue;
+            }
+            let surface = m_revolution(&curve, p2, p3, Center::Angle(omega), DVec3::Z, 8).unwrap();
+            assert!(farthest(surface.image.grid().unwrap().points(), expected.points()) < 1e-10);
+            // Their bases differ by more than a motion and a scale: here by the trapezoid's ratio.
+            let base = &surface.image.base.grid;
+            let ratio = base.at(0, 0).distance(base.at(0, 7)) / base.at(8, 0).distance(base.at(8, 7));
+            assert!((ratio / surface.corners.ratio_at(surface.omega) - 1.0).abs() < 1e-9);
+            // The base is one of revolution about the axis.
+            let [point, direction] = surface.axis;
+            for i in 0..9 {
+                let radius = |j: usize| (base.at(i, j) - point).cross(direction).length();
+                assert!((0..8).all(|j| (radius(j) / radius(0) - 1.0).abs() < 1e-9));
+            }
+        }
+    }
+
+    #[test]
+    fn a_surface_of_revolution_inverted_is_found_again() {
+        // Revolve a meridian about the y-axis, invert at a point of the axis, and take curve and corners from the image.
+        let meridian: Vec<DVec3> = (0..12)
+            .map(|i| f64::from(i) / 11.0)
+            .map(|s| DVec3::new(1.0 + 0.8 * (4.0 * s).sin() * s, 2.0 * s, 0.0))
+            .collect();
+        let base = revolution(&meridian, DVec3::ZERO, DVec3::NEG_Y, PI, 7).unwrap();
+        for (y, ratio) in [(3.5, 1.0), (-1.0, 2.0), (0.7, -1.3)] {
+            let center = DVec3::new(0.0, y, 0.0);
+            let inversion = Inversion::new(center, ratio).unwrap();
+            let expected = inversion.points(base.grid.points()).unwrap();
+            let at = |i: usize, j: usize| expected[7 * i + j];
+            let curve: Vec<DVec3> = (0..12).map(|i| at(i, 0)).collect();
+            let up = at(3, 3) - at(3, 0);
+            let surface = m_revolution(&curve, at(0, 6), at(11, 6), Center::At(center), up, 7).unwrap();
+            assert!(farthest(surface.image.grid().unwrap().points(), &expected) < 1e-10);
+            assert_eq!(surface.image.inversions.len(), 1);
+            assert!(surface.image.inversions[0].center().distance(center) < 1e-9);
+            let ends = (meridian[0].x, meridian[11].x);
+            let found = surface.corners.ratio_at(surface.omega);
+            assert!((found - ends.0 / ends.1).abs() < 1e-9, "{found}");
+            let other = surface.corners.angles_of_ratio(ends.0 / ends.1).unwrap();
+            assert!(other.iter().any(|&omega| (omega - surface.omega).sin().abs() < 1e-8));
+        }
+    }
+
+    #[test]
+    fn an_isosceles_trapezoid_needs_no_inversion() {
+        let curve: Vec<DVec3> =
+            [(-2.0, 0.0), (-3.0, 0.5), (-2.5, 1.2), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+        let (p2, p3) = (DVec3::X * 2.0, DVec3::new(1.0, 1.0, 0.0));
+        let surface = m_revolution(&curve, p2, p3, Center::Middle, DVec3::NEG_Z, 5).unwrap();
+        assert!(surface.image.inversions.is_empty() && surface.image.grid().unwrap() == surface.image.base.grid);
+        let grid = surface.image.grid().unwrap();
+        for (i, point) in curve.iter().enumerate() {
+            assert!(grid.at(i, 2).distance(DVec3::new(0.0, point.y, point.x)) < 1e-14);
+        }
+        // A center on the line of symmetry gives the same.
+        let other = m_revolution(&curve, p2, p3, Center::At(DVec3::new(0.0, -1.0, 0.0)), DVec3::NEG_Z, 5).unwrap();
+        assert!(farthest(other.image.grid().unwrap().points(), grid.points()) < 1e-13);
+        assert_eq!(other.image.inversions.len(), 1);
+    }
+
+    #[test]
+    fn the_plane_may_be_any_and_scales_do_not_matter() {
+        let mut random = Random(33);
+        let (curve, p2, p3) = sample(9);
+        let expected = m_revolution(&curve, p2, p3, Center::Angle(0.3), DVec3::Z, 6).unwrap().image.grid().unwrap();
+        for scale in [1e-6, 1.0, 1e6] {
+            let place = placed(&mut random);
+            let map = |point: DVec3| scale * place(point);
+            let moved: Vec<DVec3> = curve.iter().map(|&point| map(point)).collect();
+            let up = map(DVec3::new(0.4, 0.3, 1.0)) - map(DVec3::ZERO);
+            let surface = m_revolution(&moved, map(p2), map(p3), Center::Angle(0.3), up, 6).unwrap();
+            let points: Vec<DVec3> = expected.points().iter().map(|&point| map(point)).collect();
+            assert!(farthest(surface.image.grid().unwrap().points(), &points) < 1e-12 * scale);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_built_is_refused_by_name() {
+        let (curve, p2, p3) = sample(9);
+        let refusal = |curve: &[DVec3], p2, p3, center, up, columns| {
+            let error = m_revolution(curve, p2, p3, center, up, columns).unwrap_err();
+            (error.status(), error.place().to_owned())
+        };
+        let of_curve = |curve: &[DVec3]| refusal(curve, p2, p3, Center::Middle, DVec3::Z, 5);
+        let replaced = |point: DVec3| {
+            let mut bad = curve.clone();
+            bad[4] = point;
+            bad
+        };
+        let at = |status| (status, "curve[4]".to_owned());
+        assert_eq!(of_curve(&replaced(curve[4] + 1e-3 * DVec3::Z)), at(Status::NotPlanar));
+        assert_eq!(of_curve(&replaced(DVec3::NAN)), at(Status::InvalidValue));
+        assert_eq!(of_curve(&replaced(curve[3])), at(Status::Degenerate));
+        assert_eq!(of_curve(&curve[..1]), (Status::InvalidArgumentLength, "curve".to_owned()));
+        // On the other side of the circle of centers; on it; at the center itself.
+        let corners = Corners::new([curve[0], p2, p3, curve[8]]).unwrap();
+        let GeneralCircle::Circle(k) = corners.circle_of_centers() else { panic!("a line") };
+        assert_eq!(of_curve(&replaced(p2)), at(Status::Degenerate));
+        assert_eq!(of_curve(&replaced(k.point_at(DVec3::X, 1.0))), at(Status::Degenerate));
+        let center = corners.center_at(0.2).unwrap();
+        let error = m_revolution(&replaced(center), p2, p3, Center::Angle(0.2), DVec3::Z, 5).unwrap_err();
+        assert!(error.to_string().contains("at the center of inversion"), "{error}");
+        // Unordered, not concyclic, a ratio without a solution, no arch, a flat up.
+        assert_eq!(refusal(&curve, p3, p2, Center::Middle, DVec3::Z, 5), (Status::InvalidValue, "corners".to_owned()));
+        assert_eq!(refusal(&curve, 1.1 * p2, p3, Center::Middle, DVec3::Z, 5).0, Status::NotCircular);
+        let far = Center::Ratio { ratio: 1e4, is_inside: false };
+        assert_eq!(refusal(&curve, p2, p3, far, DVec3::Z, 5), (Status::NoSolution, "ratio".to_owned()));
+        let on_circle = Center::Angle(0.25 * TAU);
+        assert_eq!(refusal(&curve, p2, p3, on_circle, DVec3::Z, 5), (Status::NoSolution, "center".to_owned()));
+        assert_eq!(
+            refusal(&curve, p2, p3, Center::Middle, DVec3::Z, 1),
+            (Status::InvalidArgumentLength, "columns".to_owned())
+        );
+        assert_eq!(refusal(&curve, p2, p3, Center::Middle, DVec3::X, 5), (Status::InvalidValue, "up".to_owned()));
+        assert_eq!(refusal(&curve, p2, p3, Center::Middle, DVec3::NAN, 5), (Status::InvalidValue, "up".to_owned()));
+    }
+}

@@ -344,3 +344,248 @@ fn square_root(z: DVec2) -> DVec2 {
         (true, false) => DVec2::new(0.5 * z.y.abs() / root, if z.y < 0.0 { -root } else { root }),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+    use super::*;
+    use crate::geometry::canal::inversion::Inversion;
+    use crate::geometry::random::Random;
+
+    /// Four points of a circle anywhere in space, at least `apart` radians from each other.
+    fn on_circle(random: &mut Random, apart: f64) -> [DVec3; 4] {
+        let normal = random.vector().normalize();
+        let circle = Circle { center: random.vector(), normal, radius: random.between(0.2, 3.0) };
+        loop {
+            let mut angles: [f64; 4] = std::array::from_fn(|_| random.between(0.0, TAU));
+            angles.sort_by(f64::total_cmp);
+            let gaps = (0..4).map(|k| if k < 3 { angles[k + 1] - angles[k] } else { angles[0] + TAU - angles[3] });
+            if gaps.fold(TAU, f64::min) > apart {
+                return angles.map(|angle| circle.point_at(circle.center + DVec3::X, angle));
+            }
+        }
+    }
+
+    /// How far four points are from an isosceles trapezoid with parallel sides `P1 P2` and `P4 P3`, not counting what those on a line
+    /// would lack; the ratio of the sides; and the height over the longer of them.
+    fn trapezoid([p1, p2, p3, p4]: [DVec3; 4]) -> (f64, f64, f64) {
+        let (first, second) = (p2 - p1, p3 - p4);
+        let size = first.length().max(second.length());
+        let parallel = first.normalize().distance(second.normalize());
+        let legs = (p1.distance(p4) - p2.distance(p3)).abs() / size;
+        let diagonals = (p1.distance(p3) - p2.distance(p4)).abs() / size;
+        let height = (p4 - p1).reject_from_normalized(first.normalize()).length() / size;
+        (parallel.max(legs).max(diagonals), first.length() / second.length(), height)
+    }
+
+    fn images(corners: [DVec3; 4], center: Option<DVec3>) -> [DVec3; 4] {
+        center.map_or(corners, |center| corners.map(|corner| Inversion::new(center, 1.0).unwrap().point(corner)))
+    }
+
+    #[test]
+    fn centers_for_a_ratio_map_to_isosceles_trapezoids_of_that_ratio() {
+        let mut random = Random(21);
+        let mut worst = [0.0_f64; 3];
+        for _ in 0..500 {
+            let points = on_circle(&mut random, 0.1);
+            let corners = Corners::new(points).unwrap();
+            let [low, high] = corners.ratio_limits();
+            assert!(0.0 < low && low < high);
+            let ratio = low * (high / low).powf(random.between(0.02, 0.98));
+            let circle = corners.circle();
+            let angles = corners.angles_of_ratio(ratio).unwrap();
+            let [inside, outside] = angles.map(|omega| corners.center_at(omega).unwrap());
+            assert!(inside.distance(circle.center) < circle.radius && outside.distance(circle.center) > circle.radius);
+            for (omega, center) in angles.into_iter().zip([inside, outside]) {
+                let (error, found, height) = trapezoid(images(points, Some(center)));
+                worst[0] = worst[0].max(error);
+                worst[1] = worst[1].max((found / ratio - 1.0).abs());
+                worst[2] = worst[2].max((corners.ratio_at(omega) / ratio - 1.0).abs());
+                assert!(height > 1e-4, "{height}");
+            }
+            // Mirror images in the given circle.
+            let mirrored = Inversion::new(circle.center, circle.radius * circle.radius).unwrap().point(inside);
+            assert!(mirrored.distance(outside) < 1e-9 * outside.distance(circle.center));
+        }
+        assert!(worst.iter().all(|&error| error < 1e-9), "{worst:?}");
+    }
+
+    #[test]
+    fn the_printed_coefficient_has_the_other_sign() {
+        // With B as printed, the roots of the equation are −C: the corrected equation holds for C, the printed one for −C.
+        let mut random = Random(2);
+        for _ in 0..50 {
+            let corners = Corners::new(on_circle(&mut random, 0.2)).unwrap();
+            let omega = random.between(-1.0, 1.0);
+            let (x, w) = corners.homogeneous(omega);
+            let (z, t) = (x / w, corners.ratio_at(omega));
+            let [z1, z2, z3, z4] = corners.z;
+            let a = z2 - z1 + t * (z4 - z3);
+            let printed = -(1.0 + t) * z1.rotate(z3)
+                + (t - 1.0) * z1.rotate(z4)
+                + (1.0 + t) * z2.rotate(z4)
+                + (1.0 - t) * z2.rotate(z3);
+            let d = z3.rotate(z4).rotate(z2 - z1) + t * z1.rotate(z2).rotate(z4 - z3);
+            let value = |z: DVec2| (a.rotate(z).rotate(z) + printed.rotate(z) + d).length();
+            assert!(value(-z) < 1e-12 * (1.0 + t) && value(z) > 1e-3, "{} {}", value(-z), value(z));
+        }
+    }
+
+    #[test]
+    fn ratios_outside_the_interval_have_no_solution() {
+        let mut random = Random(22);
+        for _ in 0..200 {
+            let corners = Corners::new(on_circle(&mut random, 0.1)).unwrap();
+            let [low, high] = corners.ratio_limits();
+            for ratio in [low * random.between(0.01, 0.999), high / random.between(0.01, 0.999), 0.0, -1.0, -high, 1e9]
+            {
+                let error = corners.angles_of_ratio(ratio).unwrap_err();
+                assert_eq!((error.status(), error.place()), (Status::NoSolution, "ratio"), "{ratio} {low} {high}");
+            }
+            for ratio in [low, high] {
+                assert_eq!(corners.angles_of_ratio(ratio).unwrap_err().status(), Status::NoSolution);
+            }
+            assert!(corners.angles_of_ratio(low * (1.0 + 1e-6)).is_ok());
+            assert!(corners.angles_of_ratio(high / (1.0 + 1e-6)).is_ok());
+        }
+    }
+
+    #[test]
+    fn every_angle_is_a_point_of_the_circle_of_centers() {
+        let mut random = Random(23);
+        for _ in 0..200 {
+            let points = on_circle(&mut random, 0.1);
+            let corners = Corners::new(points).unwrap();
+            let GeneralCircle::Circle(k) = corners.circle_of_centers() else { panic!("a line") };
+            // By its definition: the inversion in it swaps P1 with P2, and P4 with P3.
+            let swap = Inversion::new(k.center, k.radius * k.radius).unwrap();
+            let scale = k.radius.max(1.0);
+            assert!(swap.point(points[0]).distance(points[1]) < 1e-10 * scale);
+            assert!(swap.point(points[3]).distance(points[2]) < 1e-10 * scale);
+            let circle = corners.circle();
+            for _ in 0..10 {
+                let omega = random.between(-PI, PI);
+                let center = corners.center_at(omega).unwrap();
+                assert!(k.distance(center) < 1e-10 * scale);
+                let is_inside = center.distance(circle.center) < circle.radius;
+                assert_eq!(is_inside, omega.abs() < FRAC_PI_2);
+                assert!((corners.angle(Center::At(center)).unwrap() - omega).abs() < 1e-9);
+                let (ratio, twin) = (corners.ratio_at(omega), corners.ratio_at(PI - omega));
+                assert!((ratio / twin - 1.0).abs() < 1e-12);
+                if (omega.abs() - FRAC_PI_2).abs() > 0.05 {
+                    let [inside, outside] = corners.angles_of_ratio(ratio).unwrap();
+                    let found = if is_inside { inside } else { outside };
+                    let turned = (found - omega + PI).rem_euclid(TAU) - PI;
+                    assert!(turned.abs() < 1e-9, "{turned} {omega}");
+                    let error = trapezoid(images(points, Some(center))).0;
+                    assert!(error < 1e-9, "{error}");
+                }
+            }
+            for omega in [FRAC_PI_2, -FRAC_PI_2] {
+                let center = corners.center_at(omega).unwrap();
+                assert!((center.distance(circle.center) - circle.radius).abs() < 1e-13 * circle.radius);
+                assert_eq!(corners.angle(Center::Angle(omega)).unwrap_err().status(), Status::NoSolution);
+                assert_eq!(corners.angle(Center::At(center)).unwrap_err().status(), Status::NoSolution);
+            }
+            let (inside, outside) = corners.chord_centers();
+            for center in [inside, outside.unwrap()] {
+                assert!(k.distance(center) < 1e-9 * scale);
+                assert!((center - points[0]).cross(points[1] - points[0]).length() < 1e-10 * scale * scale);
+            }
+            assert!((inside - points[0]).dot(points[1] - inside) > 0.0);
+            let middle = corners.angle(Center::Middle).unwrap();
+            assert!(corners.center_at(middle).unwrap().distance(circle.center) < 100.1 * circle.radius);
+        }
+    }
+
+    #[test]
+    fn an_isosceles_trapezoid_has_a_line_of_centers() {
+        // Sides of length 4 and 2: t = 2.
+        let points = [(-2.0, 0.0), (2.0, 0.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x, y, 5.0));
+        let corners = Corners::new(points).unwrap();
+        let GeneralCircle::Line(point, direction) = corners.circle_of_centers() else { panic!("a circle") };
+        assert!(point.x.abs() < 1e-15 && direction.cross(DVec3::Y).length() < 1e-15);
+        let [inside, outside] = corners.angles_of_ratio(2.0).unwrap();
+        assert!(inside.abs() < 1e-14 && (outside - PI).abs() < 1e-14);
+        let circle = corners.circle();
+        assert!(corners.center_at(inside).unwrap().distance(circle.center) < 1e-14);
+        assert_eq!(corners.center_at(outside), None);
+        assert_eq!(corners.angle(Center::Middle).unwrap(), PI);
+        assert!((corners.ratio_at(PI) - 2.0).abs() < 1e-14);
+        for omega in [-3.0, -2.0, -0.5, 0.3, 1.0, 2.5] {
+            let center = corners.center_at(omega).unwrap();
+            assert!(center.x.abs() < 1e-13 * center.length());
+            let (error, ratio, _) = trapezoid(images(points, Some(center)));
+            assert!(error < 1e-12 && (ratio / corners.ratio_at(omega) - 1.0).abs() < 1e-12);
+        }
+        let (inside, outside) = corners.chord_centers();
+        assert!(inside.distance(DVec3::new(0.0, 0.0, 5.0)) < 1e-14 && outside.is_none());
+        // Almost one: the middle would be 1e6 radii away; the default is not.
+        let bent = circle.point_at(points[2], 4e-6);
+        let corners = Corners::new([points[0], points[1], bent, points[3]]).unwrap();
+        let far = corners.center_at(PI).unwrap().distance(circle.center) / circle.radius;
+        let middle = corners.center_at(corners.angle(Center::Middle).unwrap()).unwrap();
+        let near = middle.distance(circle.center) / circle.radius;
+        assert!(far > 1e5 && (near - 100.0).abs() < 1e-3, "{far} {near}");
+        assert!(trapezoid(images([points[0], points[1], bent, points[3]], Some(middle))).0 < 1e-11);
+    }
+
+    #[test]
+    fn the_center_that_made_the_points_is_found_again() {
+        // Trapezoids inverted at a known center: it is on the circle of centers, and a root for the trapezoid's ratio.
+        let mut random = Random(24);
+        let mut worst = 0.0_f64;
+        for _ in 0..500 {
+            let (bottom, top, height) = (random.between(0.5, 2.0), random.between(0.5, 2.0), random.between(0.4, 2.0));
+            let trapezoid = [(-bottom, 0.0), (bottom, 0.0), (top, height), (-top, height)];
+            let center = DVec3::new(0.0, random.between(-3.0, 3.0), 0.0);
+            let inversion = Inversion::new(center, random.between(0.5, 4.0)).unwrap();
+            let points = trapezoid.map(|(x, y)| inversion.point(DVec3::new(x, y, 0.0)));
+            let Ok(corners) = Corners::new(points) else { continue };
+            let circle = corners.circle();
+            let distance = center.distance(circle.center) / circle.radius;
+            if (distance - 1.0).abs() < 0.05 || distance > 50.0 {
+                continue;
+            }
+            let angles = corners.angles_of_ratio(bottom / top).unwrap();
+            let found = angles.map(|omega| corners.center_at(omega).map_or(f64::INFINITY, |c| c.distance(center)));
+            worst = worst.max(found[0].min(found[1]) / circle.radius);
+            assert!(
+                (corners.angle(Center::At(center)).unwrap() - angles[usize::from(distance > 1.0)]).sin().abs() < 1e-8
+            );
+        }
+        assert!(worst < 1e-9, "{worst}");
+    }
+
+    #[test]
+    fn corners_and_choices_that_cannot_be_are_refused() {
+        let good = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
+        let refusal = |corners: [DVec3; 4]| {
+            let error = Corners::new(corners).unwrap_err();
+            (error.status(), error.place().to_owned())
+        };
+        let named = |status, place: &str| (status, place.to_owned());
+        let [a, b, c, d] = good;
+        assert!(Corners::new(good).is_ok() && Corners::new([d, c, b, a]).is_ok());
+        assert_eq!(refusal([a, c, b, d]), named(Status::InvalidValue, "corners"));
+        assert_eq!(refusal([a, b, d, c]), named(Status::InvalidValue, "corners"));
+        assert_eq!(refusal([a, b, b, d]), named(Status::Degenerate, "corners[2]"));
+        assert_eq!(refusal([a, b, 1.001 * c, d]).0, Status::NotCircular);
+        assert_eq!(refusal([a, b, c + 1e-3 * DVec3::Z, d]).0, Status::NotCircular);
+        assert_eq!(refusal([0.0, 1.0, 2.0, 3.0].map(|x| x * DVec3::ONE)), named(Status::Degenerate, "corners"));
+        assert_eq!(refusal([a, DVec3::NAN, c, d]), named(Status::InvalidValue, "corners[1]"));
+        let corners = Corners::new([a, b, DVec3::new(-0.6, 0.8, 0.0), d]).unwrap();
+        let refusal = |center| {
+            let error = corners.angle(center).unwrap_err();
+            (error.status(), error.place().to_owned())
+        };
+        assert_eq!(refusal(Center::At(DVec3::new(0.3, 0.1, 0.0))), named(Status::InvalidValue, "center"));
+        let lifted = corners.center_at(0.5).unwrap() + 1e-3 * DVec3::Z;
+        assert_eq!(refusal(Center::At(lifted)), named(Status::InvalidValue, "center"));
+        assert_eq!(refusal(Center::Angle(f64::NAN)), named(Status::InvalidValue, "center"));
+        assert_eq!(refusal(Center::At(DVec3::NAN)), named(Status::InvalidValue, "center"));
+        let ratio = Center::Ratio { ratio: f64::INFINITY, is_inside: true };
+        assert_eq!(refusal(ratio), named(Status::InvalidValue, "ratio"));
+    }
+}

@@ -123,3 +123,93 @@ fn default_pole(sphere: &Sphere, kept_off: &[DVec3], circle: Option<&Circle>) ->
     let candidates = directions.filter_map(DVec3::try_normalize).map(at).chain(opposite);
     candidates.fold(at(DVec3::X), |best, pole| if room(pole) > room(best) { pole } else { best })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::bases::off_circle;
+    use super::super::frame::frames;
+    use super::super::m_revolution::tests::sample;
+    use super::*;
+
+    /// The sample of the planar surface, put on a sphere by stereographic projection, at a third of its size so that it
+    /// covers about a hemisphere.
+    fn on_sphere() -> (Vec<DVec3>, DVec3, DVec3, Sphere) {
+        let (curve, p2, p3) = sample(15);
+        let sphere = Sphere { center: DVec3::new(1.0, -2.0, 0.5), radius: 1.7 };
+        let pole = sphere.center + 1.7 * DVec3::new(0.6, 0.0, 0.8);
+        let project = Inversion::new(pole, 4.0 * 1.7 * 1.7).unwrap();
+        // The plane that touches the sphere opposite to the pole.
+        let (x, y) = (DVec3::Y, DVec3::new(-0.8, 0.0, 0.6));
+        let foot = 2.0 * sphere.center - pole;
+        let map = |point: DVec3| project.point(foot + 0.6 * (point.x * x + point.y * y));
+        (curve.iter().map(|&point| map(point)).collect(), map(p2), map(p3), sphere)
+    }
+
+    #[test]
+    fn arches_are_orthogonal_to_the_sphere_and_neither_pole_nor_center_matters() {
+        let (curve, p2, p3, sphere) = on_sphere();
+        assert!(curve.iter().all(|&point| sphere.distance(point).abs() < 1e-14));
+        for is_outside in [true, false] {
+            let guide = GuideSphere { sphere, pole: None, is_outside };
+            let surface = spherical_m_revolution(&curve, p2, p3, &guide, Center::Middle, 7).unwrap();
+            assert_eq!(surface.image.inversions.len(), 2);
+            let grid = surface.image.grid().unwrap();
+            assert!(off_circle(&grid) < 1e-10, "{}", off_circle(&grid));
+            frames(&grid, surface.image.frame()).unwrap();
+            assert!(grid.at(0, 6).distance(p2) < 1e-12 && grid.at(14, 6).distance(p3) < 1e-12);
+            for (i, &point) in curve.iter().enumerate() {
+                assert!(grid.at(i, 0).distance(point) < 1e-12);
+                assert!(sphere.distance(grid.at(i, 6)).abs() < 1e-12);
+                let circle = Circle::through(point, grid.at(i, 3), grid.at(i, 6)).unwrap();
+                assert!(grid.row(i).iter().all(|&point| circle.distance(point) < 1e-11));
+                // Its tangent at the sphere is radial.
+                let radial = (point - sphere.center).normalize();
+                assert!(circle.tangent_at(point).cross(radial).length() < 1e-10);
+                assert!((1..6).all(|j| (sphere.distance(grid.at(i, j)) > 1e-3) == is_outside));
+            }
+            let sign = if is_outside { 1.0 } else { -1.0 };
+            let radial = sign * (curve[0] - sphere.center).normalize();
+            assert!(surface.image.frame().t2.distance(radial) < 1e-10);
+            // Other poles and centers: the same surface.
+            let pole = sphere.center + sphere.radius * DVec3::new(0.6, 0.64, 0.48);
+            for center in [Center::Middle, Center::Angle(0.7)] {
+                let guide = GuideSphere { pole: Some(pole), ..guide };
+                let other = spherical_m_revolution(&curve, p2, p3, &guide, center, 7).unwrap();
+                let other = other.image.grid().unwrap();
+                for (a, b) in grid.points().iter().zip(other.points()) {
+                    assert!(a.distance(*b) < 1e-9, "{}", a.distance(*b));
+                }
+            }
+            // A center given as the point of the sphere that it was.
+            let flatten = surface.image.inversions[1];
+            let center = flatten.point(surface.corners.center_at(0.7).unwrap());
+            let again = spherical_m_revolution(&curve, p2, p3, &guide, Center::At(center), 7).unwrap();
+            assert!((again.omega - 0.7).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn points_off_the_sphere_and_at_the_pole_are_refused() {
+        let (curve, p2, p3, sphere) = on_sphere();
+        let good = GuideSphere { sphere, pole: None, is_outside: true };
+        let refusal = |curve: &[DVec3], p2, guide: &GuideSphere, center| {
+            let error = spherical_m_revolution(curve, p2, p3, guide, center, 7).unwrap_err();
+            (error.status(), error.place().to_owned())
+        };
+        let named = |status, place: &str| (status, place.to_owned());
+        let mut bad = curve.clone();
+        bad[3] *= 1.001;
+        assert_eq!(refusal(&bad, p2, &good, Center::Middle), named(Status::InvalidValue, "curve[3]"));
+        assert_eq!(refusal(&curve, 1.001 * p2, &good, Center::Middle), named(Status::InvalidValue, "p2"));
+        let at = |pole| GuideSphere { pole: Some(pole), ..good };
+        assert_eq!(refusal(&curve, p2, &at(curve[3]), Center::Middle), named(Status::Degenerate, "curve[3]"));
+        assert_eq!(refusal(&curve, p2, &at(p3), Center::Middle), named(Status::Degenerate, "p3"));
+        assert_eq!(refusal(&curve, p2, &at(DVec3::ZERO), Center::Middle), named(Status::InvalidValue, "pole"));
+        assert_eq!(refusal(&curve, p2, &good, Center::At(DVec3::ZERO)), named(Status::InvalidValue, "center"));
+        let empty = GuideSphere { sphere: Sphere { radius: 0.0, ..sphere }, ..good };
+        assert_eq!(refusal(&curve, p2, &empty, Center::Middle), named(Status::InvalidValue, "sphere"));
+        let lost = GuideSphere { sphere: Sphere { center: DVec3::NAN, ..sphere }, ..good };
+        assert_eq!(refusal(&curve, p2, &lost, Center::Middle), named(Status::InvalidValue, "sphere"));
+        assert_eq!(refusal(&curve, p3, &good, Center::Middle).0, Status::Degenerate);
+    }
+}
