@@ -135,6 +135,11 @@ pub fn revolution(
         let reason = format!("expected at least {least}, found {columns}");
         return Err(Error::new(Status::InvalidArgumentLength, reason).at("columns"));
     }
+    // Before as many are allocated.
+    if profile.len().checked_mul(columns).is_none_or(|count| u32::try_from(count).is_err()) {
+        let reason = format!("{columns} times {} points do not fit 32-bit indices", profile.len());
+        return Err(Error::new(Status::TooLarge, reason).at("columns"));
+    }
     let across = |point: DVec3| (point - axis_point).reject_from_normalized(axis);
     let farthest = profile
         .iter()
@@ -403,6 +408,8 @@ mod tests {
         for (angle, columns, expected) in [
             (PI, 1, (Status::InvalidArgumentLength, "columns")),
             (TAU, 2, (Status::InvalidArgumentLength, "columns")),
+            (PI, usize::MAX, (Status::TooLarge, "columns")),
+            (PI, 1 << 31, (Status::TooLarge, "columns")),
             (0.0, 5, (Status::InvalidValue, "angle_rad")),
             (7.0, 5, (Status::InvalidValue, "angle_rad")),
             (f64::NAN, 5, (Status::InvalidValue, "angle_rad")),
@@ -595,6 +602,36 @@ mod tests {
         let swept = moulding(&flat_rail, &across).unwrap();
         assert_eq!(swept.reversed_count, 8);
         assert!(off_circle(&swept.base.grid) < 1e-13);
+    }
+
+    #[test]
+    fn what_is_not_refused_is_finite() {
+        let mut random = Random(77);
+        let sizes = [0.0, 1e-300, 1e-160, 1e-9, 1.0, 1.0, 1e9, 1e160, 1e300];
+        let mut built = 0;
+        for _ in 0..3000 {
+            let size = sizes[random.between(0.0, 9.0) as usize];
+            let mut number = || {
+                let factor =
+                    if random.between(0.0, 1.0) < 0.9 { 1.0 } else { sizes[random.between(0.0, 9.0) as usize] };
+                size * factor * random.between(-1.0, 1.0)
+            };
+            let rail: Vec<DVec3> = (0..4).map(|_| DVec3::new(number(), number(), 0.0)).collect();
+            let profile: Vec<DVec3> =
+                (0..4).map(|j| rail[0] + f64::from(j) * DVec3::new(0.0, number(), number())).collect();
+            let axis = DVec3::new(number(), number(), number());
+            let results = [
+                monge(&rail, &profile).map(|swept| swept.base),
+                moulding(&rail, &profile).map(|swept| swept.base),
+                revolution(&rail, DVec3::new(number(), number(), 0.0), DVec3::new(axis.x, axis.y, 0.0), 1.0, 4),
+            ];
+            for base in results.into_iter().flatten() {
+                built += 1;
+                assert!(base.grid.points().iter().all(|point| point.is_finite()));
+                base.frame.check("frame").unwrap();
+            }
+        }
+        assert!(built > 300, "{built}");
     }
 
     #[test]

@@ -307,6 +307,30 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn what_is_not_refused_is_finite() {
+        let mut random = Random(35);
+        let sizes = [1e-300, 1e-160, 1e-9, 1.0, 1.0, 1.0, 1e9, 1e160, 1e300];
+        let (curve, p2, p3) = sample(5);
+        let mut built = 0;
+        for _ in 0..2000 {
+            let (place, size) = (placed(&mut random), sizes[random.between(0.0, 9.0) as usize]);
+            let noise = [0.0, 1e-12, 1e-3, 1.0][random.between(0.0, 4.0) as usize];
+            let mut map = |point: DVec3| size * (place(point) + noise * random.vector());
+            let curve: Vec<DVec3> = curve.iter().map(|&point| map(point)).collect();
+            let (p2, p3, up) = (map(p2), map(p3), map(DVec3::Z));
+            let center = [Center::Middle, Center::Angle(random.between(-9.0, 9.0)), Center::At(up)];
+            let Ok(surface) = m_revolution(&curve, p2, p3, center[random.between(0.0, 3.0) as usize], up, 4) else {
+                continue;
+            };
+            built += 1;
+            assert!(surface.image.grid().unwrap().points().iter().all(|point| point.is_finite()));
+            surface.image.frame().check("frame").unwrap();
+            assert!(surface.corners.ratio_at(surface.omega).is_finite());
+        }
+        assert!(built > 100, "{built}");
+    }
+
+    #[test]
     fn what_cannot_be_built_is_refused_by_name() {
         let (curve, p2, p3) = sample(9);
         let refusal = |curve: &[DVec3], p2, p3, center, up, columns| {

@@ -309,12 +309,10 @@ impl Corners {
         if w > 0.0 { ((g / w) * u + (1.0 - g) * (1.0 + g) * s * (c / w) * v, w) } else { (v, w) }
     }
 
-    /// The inverse of `C(ω)`: with `d = C − g u`, `tan ω/2 = |d|² / (1 − g²) d·v`.
+    /// The inverse of `C(ω)`: `|C − g u|` is to `|g C − u|` as `|sin ω/2|` to `cos ω/2`, and `sin ω` has the sign of `C·v`.
     fn angle_of(&self, z: DVec2) -> f64 {
-        let d = z - self.g * self.u;
-        let along = (1.0 - self.g) * (1.0 + self.g) * d.dot(self.u.perp());
-        let half = d.length_squared().atan2(along.abs());
-        if along < 0.0 { -2.0 * half } else { 2.0 * half }
+        let half = (z - self.g * self.u).length().atan2((self.g * z - self.u).length());
+        if z.dot(self.u.perp()) < 0.0 { -2.0 * half } else { 2.0 * half }
     }
 
     fn in_space(&self, z: DVec2) -> DVec3 {
@@ -380,7 +378,11 @@ mod tests {
     }
 
     fn images(corners: [DVec3; 4], center: Option<DVec3>) -> [DVec3; 4] {
-        center.map_or(corners, |center| corners.map(|corner| Inversion::new(center, 1.0).unwrap().point(corner)))
+        center.map_or(corners, |center| {
+            // P1 stays: from a far center, images with another ratio would be small and far away.
+            let inversion = Inversion::new(center, center.distance_squared(corners[0])).unwrap();
+            corners.map(|corner| inversion.point(corner))
+        })
     }
 
     #[test]
