@@ -161,7 +161,7 @@ fn is_upright(rail: &[DVec3], normal: DVec3) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bases::off_circle;
+    use super::super::base::off_circle;
     use super::super::frame::frames;
     use super::super::m_revolution::m_revolution;
     use super::super::m_revolution::tests::{placed, sample};

@@ -152,7 +152,7 @@ pub(super) mod tests {
     use glam::{DMat3, DVec2};
 
     use super::*;
-    use crate::geometry::canal::bases::off_circle;
+    use crate::geometry::canal::base::off_circle;
     use crate::geometry::canal::frame::frames;
     use crate::geometry::canal::inversion::GeneralCircle;
     use crate::geometry::circle::Circle;

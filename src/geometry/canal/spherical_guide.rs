@@ -126,7 +126,7 @@ fn default_pole(sphere: &Sphere, kept_off: &[DVec3], circle: Option<&Circle>) ->
 
 #[cfg(test)]
 mod tests {
-    use super::super::bases::off_circle;
+    use super::super::base::off_circle;
     use super::super::frame::frames;
     use super::super::m_revolution::tests::sample;
     use super::*;
