@@ -1,7 +1,7 @@
 //! M-revolution surfaces over a curve on a sphere: two inversions in succession (Mesnil et al. 2018, end of section 5.1).
 //!
 //! An inversion at a point of the sphere, the pole, flattens the sphere to a plane. Curve and points become planar, the surface
-//! is made there as in [`m_revolution`](super::m_revolution::m_revolution), and the same inversion takes it back: the arches are
+//! is made there as in [`m_revolution`], and the same inversion takes it back: the arches are
 //! arcs of circles orthogonal to the sphere. As for the center, the result does not depend on the pole; the base does.
 
 use glam::DVec3;
