@@ -1,18 +1,18 @@
 //! M-moulding surfaces: inversions of moulding and Monge surfaces through two given curves (Mesnil et al. 2018, section 5.1 and
 //! figure 23).
 //!
-//! Given are a planar curve from `P1` to `P4` and a second curve, the rail, that leaves its plane orthogonally at `P1`. An inversion
-//! at a point of the plane keeps the plane; the images of both curves are a planar profile and a rail orthogonal to it, and
-//! give a Monge surface (see [`monge`](super::bases::monge)). Inverted back it runs through both curves, exactly. With
+//! Given are a planar curve from `P1` to `P4` and a second curve, the rail, that leaves its plane orthogonally at `P1`. An
+//! inversion at a point of the plane keeps the plane; the images of both curves are a planar profile and a rail orthogonal to
+//! it, and give a Monge surface (see [`monge`](super::bases::monge)). Inverted back it runs through both curves, exactly. With
 //! an arc of a circle as rail this is an M-revolution surface; the rail replaces its arches. The paper does not say how the
 //! center is chosen. We offer three ways:
 //!
 //! - any point of the plane off both curves;
-//! - as for an M-revolution surface: the rail ends in `P2`, and with a point `P3` on the circle through `P1`, `P2` and `P4` the center
-//!   is on the circle of centers of the four. `P2' P1'` and `P3' P4'` are then parallel sides of an isosceles trapezoid, and a rail
-//!   that turns by half a revolution takes the profile to its other side: the last row ends in `P3`;
-//! - of these, one on the line `P1 P2`. A rail in the plane through this line that is orthogonal to the curve's stays in it, and the
-//!   base is a moulding surface: both of its families of curves are planar.
+//! - as for an M-revolution surface: the rail ends in `P2`, and with a point `P3` on the circle through `P1`, `P2` and `P4` the
+//!   center is on the circle of centers of the four. `P2' P1'` and `P3' P4'` are then parallel sides of an isosceles trapezoid,
+//!   and a rail that turns by half a revolution takes the profile to its other side: the last row ends in `P3`;
+//! - of these, one on the line `P1 P2`. A rail in the plane through this line that is orthogonal to the curve's stays in it,
+//!   and the base is a moulding surface: both of its families of curves are planar.
 
 use glam::DVec3;
 
@@ -71,11 +71,11 @@ pub struct MMoulding {
 /// The M-moulding surface through a planar curve, from `P1` to `P4`, and a rail in space, from `P1`.
 ///
 /// # Errors
-/// As [`Corners::new`] and [`Corners::angle`] for `P1`, the rail's end, `P3` and `P4`; too few points, coordinates that are not finite,
-/// a rail that does not start on the curve, a center off the plane. Status `NotPlanar`: the curve is not planar, or the corners
-/// are off its plane; `Degenerate`: consecutive points coincide, a curve runs through the center, the rail's first edge is in the
-/// curve's plane, or a quad of the base has a side without length. The place is `curve[i]`, `rail[i]`, `corners[i]` or
-/// `center`.
+/// As [`Corners::new`] and [`Corners::angle`] for `P1`, the rail's end, `P3` and `P4`; too few points, coordinates
+/// that are not finite, a rail that does not start on the curve, a center off the plane. Status `NotPlanar`: the curve is not
+/// planar, or the corners are off its plane; `Degenerate`: consecutive points coincide, a curve runs through the center, the
+/// rail's first edge is in the curve's plane, or a quad of the base has a side without length. The place is `curve[i]`,
+/// `rail[i]`, `corners[i]` or `center`.
 pub fn m_moulding(curve: &[DVec3], rail: &[DVec3], center: MouldingCenter) -> Result<MMoulding> {
     polyline("curve", curve)?;
     polyline("rail", rail)?;

@@ -41,10 +41,10 @@ pub struct MRevolution {
 /// its own image, and the base about as large as the result.
 ///
 /// # Errors
-/// As [`Corners::new`] for `P1` to `P4` (`corners[i]`) and [`Corners::angle`] for the center; too few points or columns; `up` in the
-/// plane. Status `NotPlanar`: a point of the curve is off the plane of the circle; `Degenerate`: consecutive points coincide, the
-/// curve meets or crosses the circle of centers, whose image is the axis, or runs through the center of inversion. The place
-/// is `curve[i]`.
+/// As [`Corners::new`] for `P1` to `P4` (`corners[i]`) and [`Corners::angle`] for the center; too few points or
+/// columns; `up` in the plane. Status `NotPlanar`: a point of the curve is off the plane of the circle; `Degenerate`:
+/// consecutive points coincide, the curve meets or crosses the circle of centers, whose image is the axis, or runs through the
+/// center of inversion. The place is `curve[i]`.
 pub fn m_revolution(
     curve: &[DVec3],
     p2: DVec3,

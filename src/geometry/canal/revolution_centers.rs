@@ -26,8 +26,8 @@
 //! C(ω) = (g u + (1 − g²) s c v) / (c² + g² s²),    c = cos ω/2,  s = sin ω/2
 //! ```
 //!
-//! runs once through `K` while `ω` runs from −π to π, smoothly for `g = 0` too, when it passes through infinity at π. The points on the
-//! given circle are those for `ω = ±π/2`; `ω` and `π − ω` are mirror images in it, and give the same `t`.
+//! runs once through `K` while `ω` runs from −π to π, smoothly for `g = 0` too, when it passes through infinity at π. The
+//! points on the given circle are those for `ω = ±π/2`; `ω` and `π − ω` are mirror images in it, and give the same `t`.
 
 use glam::{DVec2, DVec3};
 
@@ -200,9 +200,9 @@ impl Corners {
     /// D = z3 z4 (z2 − z1) + t z1 z2 (z4 − z3)
     /// ```
     ///
-    /// The paper prints `B` with the opposite sign, which turns the roots round: they would be `−C`. For `A = 0` one solution is at
-    /// infinity, and the other is the given circle's center: that is where `ω` is π and 0. Roots on the given circle map the corners to
-    /// a line and are no solutions.
+    /// The paper prints `B` with the opposite sign, which turns the roots round: they would be `−C`. For `A = 0` one solution
+    /// is at infinity, and the other is the given circle's center: that is where `ω` is π and 0. Roots on the given circle map
+    /// the corners to a line and are no solutions.
     ///
     /// # Errors
     /// A ratio that is not finite. Status `NoSolution`: both roots are on the given circle, which is so for ratios outside
@@ -235,8 +235,8 @@ impl Corners {
     /// The angle `ω` of a choice of center.
     ///
     /// # Errors
-    /// A number that is not finite; as [`Corners::angles_of_ratio`]; `InvalidValue`: the point is not on the circle of centers within
-    /// 1e-9 of its distance; `NoSolution`: it is on the given circle. The place is `center`, or `ratio`.
+    /// A number that is not finite; as [`Corners::angles_of_ratio`]; `InvalidValue`: the point is not on the circle of
+    /// centers within 1e-9 of its distance; `NoSolution`: it is on the given circle. The place is `center`, or `ratio`.
     pub fn angle(&self, center: Center) -> Result<f64> {
         let omega = match center {
             Center::Middle => self.default_angle(),
@@ -365,8 +365,8 @@ mod tests {
         }
     }
 
-    /// How far four points are from an isosceles trapezoid with parallel sides `P1 P2` and `P4 P3`, not counting what those on a line
-    /// would lack; the ratio of the sides; and the height over the longer of them.
+    /// How far four points are from an isosceles trapezoid with parallel sides `P1 P2` and `P4 P3`, not counting what those on
+    /// a line would lack; the ratio of the sides; and the height over the longer of them.
     fn trapezoid([p1, p2, p3, p4]: [DVec3; 4]) -> (f64, f64, f64) {
         let (first, second) = (p2 - p1, p3 - p4);
         let size = first.length().max(second.length());
