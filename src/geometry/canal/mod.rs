@@ -2,6 +2,8 @@
 //! with planar lines of curvature and application to architectural design").
 
 pub mod chain;
+mod base;
+pub mod bases;
 pub mod combescure;
 #[cfg(test)]
 mod cyclide;
@@ -19,3 +21,8 @@ pub mod quality;
 pub mod strip;
 pub mod strip_of_circles;
 pub mod surface;
+pub mod m_moulding;
+pub mod m_revolution;
+mod polyline;
+pub mod revolution_centers;
+pub mod spherical_guide;
