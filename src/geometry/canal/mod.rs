@@ -5,5 +5,6 @@ pub mod combescure;
 pub mod frame;
 pub mod inversion;
 mod quad;
+pub mod smoothing;
 pub mod strip;
 pub mod strip_of_circles;
