@@ -84,6 +84,11 @@ impl Quad {
         (self.ratio / offset.length_squared()) * offset
     }
 
+    /// The distance of the image of `Q_k` from the center of inversion: a unit of `s`.
+    pub fn unit(&self) -> f64 {
+        self.q.length()
+    }
+
     /// The point of the circle whose image is `q + s t`.
     pub fn point(&self, s: f64) -> DVec3 {
         let image = self.q + s * self.t;

@@ -220,6 +220,15 @@ fn of_lengths_from(points: &[DVec3], start: DVec3, lengths: &[f64], options: &Op
     Ok(strip)
 }
 
+/// The strip of given points on both sides, which are those of a circular strip.
+pub(super) fn of_borders(guide: Vec<DVec3>, border: Vec<DVec3>) -> Result<Strip> {
+    let lengths = guide.iter().zip(&border).map(|(p, q)| p.distance(*q)).collect();
+    let quad = |k: usize| Quad::new(guide[k], border[k], guide[k + 1]).ok_or_else(|| on_a_line(k));
+    let largest = |k: usize| quad(k).map(|quad| quad.largest_length());
+    let attainable = (0..guide.len() - 1).map(largest).collect::<Result<_>>()?;
+    Ok(Strip { guide, border, lengths, attainable, flipped: Vec::new(), projected: Vec::new(), deviation: 0.0 })
+}
+
 /// Quad after quad; `choose` says where on the line of quad `k` the next point is.
 fn propagate(points: &[DVec3], start: DVec3, choose: &mut dyn FnMut(&Quad, usize) -> Result<Choice>) -> Result<Strip> {
     let mut strip = Strip {
@@ -311,7 +320,7 @@ fn start_of_radius(points: &[DVec3], start: DVec3, radius: f64) -> Result<DVec3>
     Err(Error::new(Status::NoIntersection, reason).at("radii[0]"))
 }
 
-fn on_a_line(k: usize) -> Error {
+pub(super) fn on_a_line(k: usize) -> Error {
     let reason = format!("points {k} of guide and border and point {} of the guide are on a line, or coincide", k + 1);
     Error::new(Status::Degenerate, reason).at(if k == 0 { "start".to_string() } else { format!("points[{}]", k + 1) })
 }
