@@ -7,5 +7,6 @@ pub mod frame;
 pub mod inversion;
 mod quad;
 pub mod smoothing;
+mod smoothing_net;
 pub mod strip;
 pub mod strip_of_circles;

@@ -94,7 +94,7 @@ impl Strip {
 /// Status `Degenerate`: points coincide, or `P_k`, `Q_k` and `P_{k+1}` are on a line; the place is `start` or `points[k + 1]`.
 /// `NoIntersection`: a length is larger than the diameter of its circle; `NoSolution`, where `is_strict`: no root is in cyclic
 /// order. The place is `lengths[k]`, and the reason has the diameter, the attainable interval and the nearest attainable length.
-/// With `projects_lengths` neither occurs.
+/// With `projects_lengths` neither occurs, and the result has these numbers for every step.
 pub fn of_lengths(points: &[DVec3], start: DVec3, lengths: &[f64], options: &Options) -> Result<Strip> {
     check_guide(points, start)?;
     check_positive("lengths", lengths, points.len())?;
