@@ -1,21 +1,21 @@
 //! Closed strips: whether the cyclidic net of a closed guide is smooth, and the last circle of a strip that closes (section 4.2).
 //!
-//! **Holonomy.** Around a closed polygon of `n` edges a frame is mirrored at each edge's bisecting plane, and its first tangent turned
-//! round as often (see `frame.rs`). With `H` the product of the reflections it comes back as `t1 → (−1)ⁿ H t1`, `t2 → H t2`,
-//! `n → H n`. So for even `n` it comes back to itself where `H = 1`, whatever the frame; for odd `n` where `H` is a reflection, and
-//! then `t1` must be the vector that it reverses.
+//! **Holonomy.** Around a closed polygon of `n` edges a frame is mirrored at each edge's bisecting plane, and its first tangent
+//! turned round as often (see `frame.rs`). With `H` the product of the reflections it comes back as `t1 → (−1)ⁿ H t1`, `t2 → H
+//! t2`, `n → H n`. So for even `n` it comes back to itself where `H = 1`, whatever the frame; for odd `n` where `H` is a
+//! reflection, and then `t1` must be the vector that it reverses.
 //!
-//! **Pseudo-spherical.** The paper says that a closed net is smooth if and only if the polygon is parallel to one inscribed in a
-//! sphere. The chords of a sphere about the origin are mirrored into each other, `y_{k+1} = y_k − 2 (y_k·d_k) d_k`: such a polygon
-//! exists where `H` has a fixed vector `y_0` (whose chords are not all zero, and point forwards if lengths are to be
-//! positive). For odd `n` a fixed vector makes `H` a reflection, and both are the same. For even `n` `H` is a rotation, which always
-//! fixes its axis; that it is the identity is one condition more. Planar polygons inscribed in a circle meet it for all `n`,
-//! random hexagons on a sphere do not.
+//! **Pseudo-spherical.** The paper says that a closed net is smooth if and only if the polygon is parallel to one inscribed in
+//! a sphere. The chords of a sphere about the origin are mirrored into each other, `y_{k+1} = y_k − 2 (y_k·d_k) d_k`: such a
+//! polygon exists where `H` has a fixed vector `y_0` (whose chords are not all zero, and point forwards if lengths are to be
+//! positive). For odd `n` a fixed vector makes `H` a reflection, and both are the same. For even `n` `H` is a rotation, which
+//! always fixes its axis; that it is the identity is one condition more. Planar polygons inscribed in a circle meet it for all
+//! `n`, random hexagons on a sphere do not.
 //!
-//! **The last circle.** `C_0` is the circle of the first quad, through `P_0` and the strip's first other point `P`; `C_f` that of the
-//! last but one, through the last point `P_f` of the guide (Fig. 14). The closing quad's circle goes through `P_0` and `P_f` and
-//! meets `C_0` and `C_f` once more. If `C_0` and `C_f` are on one sphere it is that through `P`. If not, it is on the sphere through
-//! `C_0` and `P_f` and on that through `C_f` and `P_0`, and `P` must move to where their circle meets `C_0`.
+//! **The last circle.** `C_0` is the circle of the first quad, through `P_0` and the strip's first other point `P`; `C_f` that
+//! of the last but one, through the last point `P_f` of the guide (Fig. 14). The closing quad's circle goes through `P_0` and
+//! `P_f` and meets `C_0` and `C_f` once more. If `C_0` and `C_f` are on one sphere it is that through `P`. If not, it is on the
+//! sphere through `C_0` and `P_f` and on that through `C_f` and `P_0`, and `P` must move to where their circle meets `C_0`.
 //!
 //! The inversion at `P_0` makes planes of both spheres, a line of `C_0` and of the circle that is sought; so planar strips are no
 //! exception and no root is to be chosen.
@@ -46,8 +46,9 @@ const ON: f64 = 1e-9;
 pub struct Holonomy {
     /// The product of the reflections.
     pub matrix: DMat3,
-    /// The Frobenius norm of its difference from the identity, for an even number of edges, or from the reflection that reverses
-    /// `tangent`, for an odd one. It is of first order in the angle that is missing; the trace, which the latter makes 1, of second.
+    /// The Frobenius norm of its difference from the identity, for an even number of edges, or from the reflection that
+    /// reverses `tangent`, for an odd one. It is of first order in the angle that is missing; the trace, which the latter makes
+    /// 1, of second.
     pub residual: f64,
     /// Whether the residual is round-off: the net is smooth across the seam.
     pub closes: bool,
@@ -268,8 +269,8 @@ impl ClosedStrip {
     }
 }
 
-/// Closes a strip, of 2 points on either side or more, with the guide's last point `last`: the point opposite to it follows, and the
-/// strip's first point beside the guide moves where it must.
+/// Closes a strip, of 2 points on either side or more, with the guide's last point `last`: the point opposite to it follows,
+/// and the strip's first point beside the guide moves where it must.
 ///
 /// # Errors
 /// As [`close`], or `last` coincides with the strip's last point.

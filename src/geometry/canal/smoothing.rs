@@ -192,7 +192,7 @@ pub(super) fn check(input: &Input<'_>, options: &Options) -> Result<()> {
     let Options { spacing_ratio, length_change, length_weight, half_angle_rad, .. } = *options;
     within("spacing_ratio", spacing_ratio, spacing_ratio >= 1.0, "1 or more")?;
     within("length_change", length_change, length_change > 0.0, "a number above 0")?;
-    let is_weight = length_weight >= 0.0 && length_weight < f64::INFINITY;
+    let is_weight = (0.0..f64::INFINITY).contains(&length_weight);
     within("length_weight", length_weight, is_weight, "0 or more")?;
     let is_angle = half_angle_rad > 0.0 && half_angle_rad <= std::f64::consts::PI;
     within("half_angle_rad", half_angle_rad, is_angle, "above 0 up to π")?;

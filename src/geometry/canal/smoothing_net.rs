@@ -5,10 +5,10 @@
 //! `k` made a line as in `quad.rs`, the next point of the border is at `s = ‖q‖ σ_k exp v_k`, `σ_k` its value at the start. All
 //! `v` give strips whose corners are in cyclic order, and `exp v_k` is nearly the factor of the border's edge. Lengths follow.
 //!
-//! **Bounds.** Without bounds lengths and spacings drift away. A spacing is its first value times `exp(h tanh(x/h))`,
-//! `h = ½ ln r`, all then scaled so that the ends stay: so the order along the curve is kept and two spacings change against each
-//! other by `r` at most. A length that changes by the part `c` at most costs `−μ ln(1 − x²)` with `x` its change over `c`, a barrier: at
-//! a bound without one the search would stop, since BFGS does not slide along.
+//! **Bounds.** Without bounds lengths and spacings drift away. A spacing is its first value times `exp(h tanh(x/h))`, `h = ½ ln
+//! r`, all then scaled so that the ends stay: so the order along the curve is kept and two spacings change against each other
+//! by `r` at most. A length that changes by the part `c` at most costs `−μ ln(1 − x²)` with `x` its change over `c`, a barrier:
+//! at a bound without one the search would stop, since BFGS does not slide along.
 //!
 //! **Angles.** Normals are found in spherical coordinates whose axis is the first tangent of the frame at the start: `λ` turns the
 //! normal about it and `θ` tilts it along it, so that the frame at the start is as far as can be from the poles. The third angle
