@@ -4,6 +4,7 @@
 pub mod chain;
 mod base;
 pub mod bases;
+pub mod closing;
 pub mod combescure;
 #[cfg(test)]
 mod cyclide;
@@ -18,6 +19,8 @@ pub mod parallel;
 pub mod patch;
 mod quad;
 pub mod quality;
+pub mod smoothing;
+mod smoothing_net;
 pub mod strip;
 pub mod strip_of_circles;
 pub mod surface;

@@ -18,7 +18,8 @@ use crate::geometry::circle::PARALLEL;
 /// A length this close above the largest that a circle allows, as a multiple of it, is that length: it differs by round-off.
 pub(super) const ROUND_OFF: f64 = 1e-12;
 
-/// Part of the way from `Q_k` to `P_{k+1}` that a length which is too large to be in order is given back: at the limit itself the border's edge would have no length.
+/// Part of the way from `Q_k` to `P_{k+1}` that a length which is too large to be in order is given back: at the limit itself
+/// the border's edge would have no length.
 const LEAST_STEP: f64 = 1e-3;
 
 /// The solutions of an equation, not a number where there are fewer than two.
@@ -82,6 +83,11 @@ impl Quad {
     pub fn image(&self, point: DVec3) -> DVec3 {
         let offset = point - self.corner;
         (self.ratio / offset.length_squared()) * offset
+    }
+
+    /// The distance of the image of `Q_k` from the center of inversion: a unit of `s`.
+    pub fn unit(&self) -> f64 {
+        self.q.length()
     }
 
     /// The point of the circle whose image is `q + s t`.

@@ -1,11 +1,11 @@
 //! Circular strips: one quad after the other, from points of a guide curve and one number for each quad.
 //!
-//! A strip has the guide's points `P_0 … P_n` on one side and `Q_0 … Q_n` on the other; all quads `P_k Q_k Q_{k+1} P_{k+1}` have
-//! their corners on a circle. With `Q_0` given, the circle of each quad goes through `P_k`, `Q_k` and `P_{k+1}`, and one number
-//! says where on it `Q_{k+1}` is. The paper offers two (section 3.2, Fig. 6): the length of the crossing edge `P_{k+1}Q_{k+1}`
-//! ([`of_lengths`], with one length for each, or [`lengths_between`] one for the first and one for the last) and the radius of the
-//! next circle ([`of_radii`]). A third is the length of the border's edge `Q_kQ_{k+1}` ([`of_border_edges`]); with it a border of one
-//! given length is had by [`edges_of_border`].
+//! A strip has the guide's points `P_0 … P_n` on one side and `Q_0 … Q_n` on the other; all quads `P_k Q_k Q_{k+1} P_{k+1}`
+//! have their corners on a circle. With `Q_0` given, the circle of each quad goes through `P_k`, `Q_k` and `P_{k+1}`, and one
+//! number says where on it `Q_{k+1}` is. The paper offers two (section 3.2, Fig. 6): the length of the crossing edge
+//! `P_{k+1}Q_{k+1}` ([`of_lengths`], with one length for each, or [`lengths_between`] one for the first and one for the last)
+//! and the radius of the next circle ([`of_radii`]). A third is the length of the border's edge `Q_kQ_{k+1}`
+//! ([`of_border_edges`]); with it a border of one given length is had by [`edges_of_border`].
 //!
 //! Each number is a quadratic equation on the circle, solved in `quad.rs`. Where one root has the corners in cyclic order, it is
 //! taken. Where both have, which for lengths happens when `P_kQ_k` leans backwards, that one is whose border edge is nearer to
@@ -82,11 +82,11 @@ impl Strip {
 
 /// The strip whose crossing edges have given lengths, in model units; `lengths[0]` is that of `P_0Q_0`.
 ///
-/// Where `fits_start` is set, `Q_0` is in the half plane from the line `P_0P_1` through `start`, as far from `P_0` as `lengths[0]`
-/// says, in the direction that follows from `L'(0)`: the border's speed is `λ = 1 − L κ·u / sin²α`, with `κ` the curvature vector
-/// of the circle through the first three points and `u` the direction of the chord, so that the angle `α` to that circle at first
-/// does not change; and the first quad has the sides `h`, `L_1`, `λh`, `L_0`, whence its angle. If the lengths cannot all be met from there,
-/// the angle is sought that misses them by least. Otherwise `Q_0` is `start`.
+/// Where `fits_start` is set, `Q_0` is in the half plane from the line `P_0P_1` through `start`, as far from `P_0` as
+/// `lengths[0]` says, in the direction that follows from `L'(0)`: the border's speed is `λ = 1 − L κ·u / sin²α`, with `κ` the
+/// curvature vector of the circle through the first three points and `u` the direction of the chord, so that the angle `α` to
+/// that circle at first does not change; and the first quad has the sides `h`, `L_1`, `λh`, `L_0`, whence its angle. If the
+/// lengths cannot all be met from there, the angle is sought that misses them by least. Otherwise `Q_0` is `start`.
 ///
 /// # Errors
 /// Fewer than 2 points, another number of lengths than of points, a number that is not finite, a length that is not above 0, or
@@ -94,7 +94,7 @@ impl Strip {
 /// Status `Degenerate`: points coincide, or `P_k`, `Q_k` and `P_{k+1}` are on a line; the place is `start` or `points[k + 1]`.
 /// `NoIntersection`: a length is larger than the diameter of its circle; `NoSolution`, where `is_strict`: no root is in cyclic
 /// order. The place is `lengths[k]`, and the reason has the diameter, the attainable interval and the nearest attainable length.
-/// With `projects_lengths` neither occurs.
+/// With `projects_lengths` neither occurs, and the result has these numbers for every step.
 pub fn of_lengths(points: &[DVec3], start: DVec3, lengths: &[f64], options: &Options) -> Result<Strip> {
     check_guide(points, start)?;
     check_positive("lengths", lengths, points.len())?;
@@ -144,7 +144,8 @@ pub fn of_radii(points: &[DVec3], start: DVec3, radii: &[f64], is_strict: bool) 
             let (low, high) = (quad.ratio / (2.0 * range.end()), quad.ratio / (2.0 * range.start()));
             let radius = radii[k + 1];
             let reason = format!(
-                "no point of the quad before gives the radius {radius}: {low} to {high} are attainable, the nearest is {}",
+                "no point of the quad before gives the radius {radius}: {low} to {high} are attainable, the nearest \
+                 is {}",
                 radius.max(low).min(high)
             );
             Err(Error::new(status, reason).at(format!("radii[{}]", k + 1)))
@@ -172,7 +173,8 @@ pub fn of_border_edges(points: &[DVec3], start: DVec3, edges: &[f64]) -> Result<
         None => {
             let (length, largest) = (edges[k], quad.largest_border_edge());
             let reason = format!(
-                "a border edge of {length} is not attainable: lengths above 0 and below {largest} are, which is the nearest"
+                "a border edge of {length} is not attainable: lengths above 0 and below {largest} are, which is the \
+                 nearest"
             );
             Err(Error::new(Status::NoIntersection, reason).at(format!("edges[{k}]")))
         }
@@ -218,6 +220,15 @@ fn of_lengths_from(points: &[DVec3], start: DVec3, lengths: &[f64], options: &Op
     strip.deviation = differences.fold(0.0, f64::max);
     strip.projected = projected;
     Ok(strip)
+}
+
+/// The strip of given points on both sides, which are those of a circular strip.
+pub(super) fn of_borders(guide: Vec<DVec3>, border: Vec<DVec3>) -> Result<Strip> {
+    let lengths = guide.iter().zip(&border).map(|(p, q)| p.distance(*q)).collect();
+    let quad = |k: usize| Quad::new(guide[k], border[k], guide[k + 1]).ok_or_else(|| on_a_line(k));
+    let largest = |k: usize| quad(k).map(|quad| quad.largest_length());
+    let attainable = (0..guide.len() - 1).map(largest).collect::<Result<_>>()?;
+    Ok(Strip { guide, border, lengths, attainable, flipped: Vec::new(), projected: Vec::new(), deviation: 0.0 })
 }
 
 /// Quad after quad; `choose` says where on the line of quad `k` the next point is.
@@ -311,7 +322,7 @@ fn start_of_radius(points: &[DVec3], start: DVec3, radius: f64) -> Result<DVec3>
     Err(Error::new(Status::NoIntersection, reason).at("radii[0]"))
 }
 
-fn on_a_line(k: usize) -> Error {
+pub(super) fn on_a_line(k: usize) -> Error {
     let reason = format!("points {k} of guide and border and point {} of the guide are on a line, or coincide", k + 1);
     Error::new(Status::Degenerate, reason).at(if k == 0 { "start".to_string() } else { format!("points[{}]", k + 1) })
 }

@@ -1,18 +1,18 @@
 //! Circular strips of circles that someone drew (section 3.2, Fig. 5).
 //!
-//! **Which circles.** A strip of circles can be meant in two ways: as the circles of the quads, or as the crossing circles of the
-//! canal surface. Here they are those of the quads. The paper says so where it parametrises the same strip by "one point P in space
-//! defining the first circle" (Fig. 6: the circle through `P`, `P_0` and `P_1`) and where it closes strips (Fig. 14: the first
-//! and the last circle go through two points of the guide each). And only so does Fig. 5 work, where eight circles in one plane give
-//! a canal surface of which the half above the plane is shown: consecutive circles meet in two points, the ends of a crossing edge;
-//! with a frame whose second tangent is normal to the plane, the crossing arcs are half circles over these edges. Canal surfaces
-//! through given crossing circles are made by meshing between circles of one sphere instead.
+//! **Which circles.** A strip of circles can be meant in two ways: as the circles of the quads, or as the crossing circles of
+//! the canal surface. Here they are those of the quads. The paper says so where it parametrises the same strip by "one point P
+//! in space defining the first circle" (Fig. 6: the circle through `P`, `P_0` and `P_1`) and where it closes strips (Fig. 14:
+//! the first and the last circle go through two points of the guide each). And only so does Fig. 5 work, where eight circles in
+//! one plane give a canal surface of which the half above the plane is shown: consecutive circles meet in two points, the ends
+//! of a crossing edge; with a frame whose second tangent is normal to the plane, the crossing arcs are half circles over these
+//! edges. Canal surfaces through given crossing circles are made by meshing between circles of one sphere instead.
 //!
-//! **Where they meet.** Circles that meet in two points are on one sphere or in one plane. Drawn in a plane, overlapping circles do;
-//! drawn in space they rarely do. Then the line in which the planes of two consecutive circles meet crosses either circle in
-//! two points, and the means of these are the ends of a crossing edge; or where both would meet if drawn in the plane halfway
-//! between theirs, if that is nearer to both circles. The guide goes through the means on its side as they are; on
-//! the other side each point is the one on its quad's circle, and in cyclic order there, that is nearest to the mean. The strip is
+//! **Where they meet.** Circles that meet in two points are on one sphere or in one plane. Drawn in a plane, overlapping
+//! circles do; drawn in space they rarely do. Then the line in which the planes of two consecutive circles meet crosses either
+//! circle in two points, and the means of these are the ends of a crossing edge; or where both would meet if drawn in the plane
+//! halfway between theirs, if that is nearer to both circles. The guide goes through the means on its side as they are; on the
+//! other side each point is the one on its quad's circle, and in cyclic order there, that is nearest to the mean. The strip is
 //! circular, not quite the circles drawn; how far its points are from them is told.
 
 use glam::DVec3;
@@ -226,6 +226,7 @@ fn nearest(previous: DVec3, across: DVec3, corner: DVec3, wish: DVec3) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::canal::frame::{self, Frame};
     use crate::geometry::canal::strip::tests::{helix, misfit};
     use crate::geometry::canal::strip::{of_border_edges, of_lengths};
     use crate::geometry::random::Random;
@@ -237,7 +238,7 @@ mod tests {
             let center = DVec3::new(1.1 * s, 0.6 * (0.8 * s).sin(), 0.0);
             Circle {
                 center,
-                normal: if k % 2 == 0 { DVec3::Z } else { -DVec3::Z },
+                normal: if k.is_multiple_of(2) { DVec3::Z } else { -DVec3::Z },
                 radius: 1.0 + 0.2 * (1.7 * s).cos(),
             }
         };
@@ -257,6 +258,14 @@ mod tests {
         }
         assert!(strip.guide[0].distance(start) < 1e-12 && strip.guide.iter().all(|p| p.y < 0.7));
         assert!(strip.guide.iter().zip(&strip.border).all(|(p, q)| q.y > p.y + 0.5));
+        // The half above the plane: crossing arcs that rise at a right angle to it come down so, half circles.
+        let frame = Frame::of_tangent_two(DVec3::Z, DVec3::Y).unwrap();
+        let frames = frame::frames(&strip.grid().unwrap(), frame).unwrap();
+        assert!(
+            frames
+                .chunks(2)
+                .all(|pair| pair[0].t2.distance(DVec3::Z) < 1e-12 && pair[1].t2.distance(-DVec3::Z) < 1e-12)
+        );
         // The thirds of the free arc.
         let (a, b, c) = (strip.guide[7], strip.guide[8], strip.border[8]);
         assert!((a.distance(b) - b.distance(c)).abs() < 1e-12 && b.x > circles[7].center.x);
