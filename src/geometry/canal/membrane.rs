@@ -143,7 +143,7 @@ mod tests {
     use crate::geometry::canal::cyclide::Cyclide;
     use crate::geometry::canal::frame::Frame;
     use crate::geometry::canal::inversion::Inversion;
-    use crate::geometry::canal::surface::{Base, SuperCanal};
+    use crate::geometry::canal::surface::{BaseKind, SuperCanal};
     use crate::geometry::random::Random;
     use crate::mesh::Grid;
 
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn a_canal_surface_is_in_equilibrium_and_its_images_are_not() {
         let mut random = Random(3);
-        let mut surface = SuperCanal::new(Cyclide::new().net([0.2, 2.0], [-0.5, 1.2], 5, 5), Base::Canal);
+        let mut surface = SuperCanal::new(Cyclide::new().net([0.2, 2.0], [-0.5, 1.2], 5, 5), BaseKind::Canal);
         let residuals = |surface: &SuperCanal| {
             [2, 4, 8].map(|pieces| least_residual(&surface.refined(pieces, pieces).unwrap()).unwrap())
         };

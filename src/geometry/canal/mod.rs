@@ -1,9 +1,9 @@
 //! Super-canal surfaces: circular nets from two or three curves (Mesnil, Douthe, Baverel, Léger 2018, "Morphogenesis of surfaces
 //! with planar lines of curvature and application to architectural design").
 
-pub mod chain;
 mod base;
 pub mod bases;
+pub mod chain;
 pub mod closing;
 pub mod combescure;
 #[cfg(test)]
@@ -11,21 +11,21 @@ mod cyclide;
 pub mod folds;
 pub mod frame;
 pub mod inversion;
+pub mod m_moulding;
+pub mod m_revolution;
 pub mod membrane;
 pub mod net;
 pub mod node_axes;
 pub mod panels;
 pub mod parallel;
 pub mod patch;
+mod polyline;
 mod quad;
 pub mod quality;
+pub mod revolution_centers;
 pub mod smoothing;
 mod smoothing_net;
+pub mod spherical_guide;
 pub mod strip;
 pub mod strip_of_circles;
 pub mod surface;
-pub mod m_moulding;
-pub mod m_revolution;
-mod polyline;
-pub mod revolution_centers;
-pub mod spherical_guide;

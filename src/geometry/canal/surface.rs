@@ -12,7 +12,7 @@ use crate::error::Result;
 
 /// What the base of a super-canal surface is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Base {
+pub enum BaseKind {
     /// A canal surface: its sections are circles.
     Canal,
     /// A surface of revolution: a canal surface whose parallels share an axis.
@@ -27,14 +27,14 @@ pub enum Base {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SuperCanal {
     base: Net,
-    kind: Base,
+    kind: BaseKind,
     chain: Vec<Transform>,
     net: Net,
 }
 
 impl SuperCanal {
     /// A surface without transformations.
-    pub fn new(base: Net, kind: Base) -> Self {
+    pub fn new(base: Net, kind: BaseKind) -> Self {
         Self { net: base.clone(), base, kind, chain: Vec::new() }
     }
 
@@ -44,7 +44,7 @@ impl SuperCanal {
     }
 
     /// What the base is.
-    pub fn kind(&self) -> Base {
+    pub fn kind(&self) -> BaseKind {
         self.kind
     }
 
@@ -112,11 +112,11 @@ impl SuperCanal {
         // Some names say the same: an inversion of a canal surface is one, and moulding surfaces are C-revolution surfaces, which
         // another Combescure transformation does not leave.
         let (base, own_letter) = match self.kind {
-            Base::Canal => ("canal", Some('M')),
-            Base::Revolution if letters.ends_with('C') => ("moulding", Some('C')),
-            Base::Revolution => ("revolution", None),
-            Base::Moulding => ("moulding", Some('C')),
-            Base::Circular => ("circular net", None),
+            BaseKind::Canal => ("canal", Some('M')),
+            BaseKind::Revolution if letters.ends_with('C') => ("moulding", Some('C')),
+            BaseKind::Revolution => ("revolution", None),
+            BaseKind::Moulding => ("moulding", Some('C')),
+            BaseKind::Circular => ("circular net", None),
         };
         if own_letter.is_some_and(|letter| letters.ends_with(letter)) {
             letters.pop();
@@ -137,7 +137,7 @@ mod tests {
     use crate::mesh::Grid;
 
     fn surface() -> SuperCanal {
-        SuperCanal::new(Cyclide::new().net([0.2, 1.9], [-0.7, 1.3], 5, 4), Base::Canal)
+        SuperCanal::new(Cyclide::new().net([0.2, 1.9], [-0.7, 1.3], 5, 4), BaseKind::Canal)
     }
 
     fn inversion() -> Transform {
@@ -257,23 +257,23 @@ mod tests {
     fn families_are_named_as_in_the_paper() {
         let net = surface().base().clone();
         let (m, c) = (inversion(), combescure(1));
-        let name = |kind: Base, chain: &[&Transform]| {
+        let name = |kind: BaseKind, chain: &[&Transform]| {
             let mut surface = SuperCanal::new(net.clone(), kind);
             chain.iter().for_each(|&transform| surface.push(transform.clone()).unwrap());
             surface.family()
         };
         for (kind, chain, expected) in [
-            (Base::Canal, vec![], "canal"),
-            (Base::Canal, vec![&m], "canal"),
-            (Base::Canal, vec![&c], "C-canal"),
-            (Base::Canal, vec![&m, &c, &m], "MC-canal"),
-            (Base::Revolution, vec![], "revolution"),
-            (Base::Revolution, vec![&m], "M-revolution"),
-            (Base::Revolution, vec![&c], "moulding"),
-            (Base::Revolution, vec![&m, &c], "CM-revolution"),
-            (Base::Revolution, vec![&m, &c, &m], "MCM-revolution"),
-            (Base::Moulding, vec![&c, &m], "M-moulding"),
-            (Base::Circular, vec![&m], "M-circular net"),
+            (BaseKind::Canal, vec![], "canal"),
+            (BaseKind::Canal, vec![&m], "canal"),
+            (BaseKind::Canal, vec![&c], "C-canal"),
+            (BaseKind::Canal, vec![&m, &c, &m], "MC-canal"),
+            (BaseKind::Revolution, vec![], "revolution"),
+            (BaseKind::Revolution, vec![&m], "M-revolution"),
+            (BaseKind::Revolution, vec![&c], "moulding"),
+            (BaseKind::Revolution, vec![&m, &c], "CM-revolution"),
+            (BaseKind::Revolution, vec![&m, &c, &m], "MCM-revolution"),
+            (BaseKind::Moulding, vec![&c, &m], "M-moulding"),
+            (BaseKind::Circular, vec![&m], "M-circular net"),
         ] {
             assert_eq!(name(kind, &chain), expected);
         }
