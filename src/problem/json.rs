@@ -1,16 +1,31 @@
-//! The text of the JSON form: a line per point, constraint, force, face and edge, so that files are short, a change is a
-//! changed line, and the line of an error is the thing that errs.
+//! Reading and writing JSON forms. What is written has a line per point, constraint, force, face and edge, so that files are
+//! short, a change is a changed line, and the line of an error is the thing that errs.
 
 use std::io::{Result, Write};
 
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::ser::Formatter;
+
+use crate::error::{self, Error, Status};
 
 /// Arrays and objects nested deeper than this stand on one line: 1 is the problem itself, 2 the list of points.
 const LAST_BROKEN_DEPTH: usize = 2;
 
+/// What a text says; an error names the place in it.
+pub(crate) fn from_text<T: DeserializeOwned>(text: &str) -> error::Result<T> {
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+        let place = error.path().to_string();
+        let refusal = Error::new(Status::InvalidInput, error.inner().to_string());
+        if place == "." { refusal } else { refusal.at(place) }
+    })?;
+    deserializer.end().map_err(|error| Error::new(Status::InvalidInput, error.to_string()))?;
+    Ok(value)
+}
+
 /// `value` as text that ends in a newline.
-pub(super) fn to_text(value: &impl Serialize) -> String {
+pub(crate) fn to_text(value: &impl Serialize) -> String {
     let mut bytes = Vec::new();
     // Neither the memory nor the plain data that is written can fail.
     let _ = value.serialize(&mut serde_json::Serializer::with_formatter(&mut bytes, Lines::default()));

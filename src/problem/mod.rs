@@ -6,7 +6,7 @@
 
 mod faces;
 mod forces;
-mod json;
+pub(crate) mod json;
 mod objective;
 pub mod recipes;
 mod references;
@@ -263,13 +263,7 @@ impl Problem {
     /// # Errors
     /// The place in the text and what was expected there.
     pub fn from_json(text: &str) -> Result<Self> {
-        let mut deserializer = serde_json::Deserializer::from_str(text);
-        let problem: Self = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
-            let place = error.path().to_string();
-            let refusal = Error::new(Status::InvalidInput, error.inner().to_string());
-            if place == "." { refusal } else { refusal.at(place) }
-        })?;
-        deserializer.end().map_err(|error| Error::new(Status::InvalidInput, error.to_string()))?;
+        let problem: Self = json::from_text(text)?;
         problem.check()?;
         Ok(problem)
     }

@@ -8,6 +8,7 @@ pub mod closing;
 pub mod combescure;
 #[cfg(test)]
 mod cyclide;
+pub mod file;
 pub mod folds;
 pub mod frame;
 pub mod inversion;
