@@ -96,6 +96,11 @@ impl Quad {
         self.corner + (self.ratio / image.length_squared()) * image
     }
 
+    /// Where the image of a point of the circle is.
+    pub fn place(&self, point: DVec3) -> f64 {
+        (self.image(point) - self.q).dot(self.t)
+    }
+
     fn guide_edge(&self) -> f64 {
         self.ratio.sqrt()
     }

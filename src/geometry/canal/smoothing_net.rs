@@ -21,9 +21,9 @@
 use glam::DVec3;
 
 use super::frame::Frame;
-use super::quad::{Choice, Quad};
+use super::quad::Quad;
 use super::smoothing::{Cone, Input, Options, check};
-use super::strip;
+use super::strip::on_a_line;
 use crate::error::{Error, Result, Status};
 use crate::geometry::circle::reflect;
 use crate::linalg::bfgs::{self, DIFFERENCE, Objective};
@@ -32,6 +32,9 @@ use crate::mesh::grid::diagonal;
 /// Weight of the barrier at the bounds of lengths, in units of what is minimised at the start: on a rough strip of sixteen circles
 /// weights from 1e-6 to 1e-3 end at values within 5 %, but without one a third higher.
 const BARRIER: f64 = 1e-4;
+
+/// Distance over the extent up to which the guide's points are on the curve and corners on their circles.
+const ON: f64 = 1e-9;
 
 /// How much an arc that is near or beyond the largest half angle at the start may exceed it, in radians: at a bound from the
 /// beginning no step would be possible.
@@ -135,7 +138,7 @@ pub(super) struct At {
 pub(super) struct Net<'a> {
     curve: &'a dyn Fn(f64) -> DVec3,
     parameters: &'a [f64],
-    lengths: &'a [f64],
+    lengths: Vec<f64>,
     /// `σ_k`.
     steps: Vec<f64>,
     pub orientation: Orientation,
@@ -162,8 +165,15 @@ impl<'a> Net<'a> {
             let reason = format!("the curve is not finite at {}: {}", input.parameters[k], points[k]);
             return Err(Error::new(Status::InvalidValue, reason).at(format!("parameters[{k}]")));
         }
-        let strict = strip::Options { is_strict: true, ..Default::default() };
-        let strip = strip::of_lengths(&points, input.start, input.lengths, &strict)?;
+        let border = &input.strip.border;
+        let extent = diagonal(&[points.as_slice(), border].concat());
+        if let Some(k) = (0..points.len()).find(|&k| !(points[k].distance(input.strip.guide[k]) <= ON * extent)) {
+            let (found, expected) = (points[k], input.strip.guide[k]);
+            let reason = format!("the curve is at {found} there, the strip's guide at {expected}");
+            return Err(Error::new(Status::InvalidValue, reason).at(format!("parameters[{k}]")));
+        }
+        let lengths: Vec<f64> = points.iter().zip(border).map(|(p, q)| p.distance(*q)).collect();
+        let steps = steps(&points, border, extent)?;
         let cone = match options.cone {
             Some(cone) => {
                 let axis = cone.axis.try_normalize().ok_or_else(|| {
@@ -181,28 +191,22 @@ impl<'a> Net<'a> {
         })?;
         let least = options.half_angle_rad.cos();
         let bound = |cosine: f64| least.min((cosine.clamp(-1.0, 1.0).acos() + ROOM).min(std::f64::consts::PI).cos());
-        let first = State::first(points[0], strip.border[0], &frame);
+        let first = State::first(points[0], border[0], &frame);
         let first_cosine = bound(squared_curvature(first.border - first.guide, frame.t2).1);
         let (mut state, mut cosines) = (first, Vec::with_capacity(points.len() - 1));
-        let mut steps = Vec::with_capacity(points.len() - 1);
         for k in 1..points.len() {
-            let step = Quad::new(points[k - 1], strip.border[k - 1], points[k]).and_then(|quad| {
-                Choice::of(&quad, quad.at_length(input.lengths[k])).map(|choice| choice.s / quad.unit())
-            });
-            steps.push(step.ok_or_else(|| strip::on_a_line(k - 1))?);
-            let (next, found) = state.next(points[k], strip.border[k]);
+            let (next, found) = state.next(points[k], border[k]);
             cosines.push(found.map(bound));
             state = next;
         }
-        let extent = diagonal(&[strip.guide.as_slice(), &strip.border].concat());
         Ok(Self {
             curve: input.curve,
             parameters: input.parameters,
-            lengths: input.lengths,
+            direction: (border[0] - points[0]).normalize(),
+            lengths,
             steps,
             orientation,
             first_point: points[0],
-            direction: (input.start - points[0]).normalize(),
             first_cosine,
             cosines,
             log_spacing: 0.5 * options.spacing_ratio.ln(),
@@ -364,6 +368,24 @@ impl Objective for Net<'_> {
             });
         }
     }
+}
+
+/// `σ_k` of a strip.
+fn steps(points: &[DVec3], border: &[DVec3], extent: f64) -> Result<Vec<f64>> {
+    let step = |k: usize| {
+        let quad = Quad::new(points[k], border[k], points[k + 1]).ok_or_else(|| on_a_line(k))?;
+        let s = quad.place(border[k + 1]);
+        let refusal = |status, reason: String| Err(Error::new(status, reason).at(format!("strip: quad {k}")));
+        let distance = quad.point(s).distance(border[k + 1]);
+        if !(distance <= ON * extent) {
+            return refusal(Status::NotCircular, format!("its corners are {distance:e} off a circle"));
+        }
+        if !(s > 0.0) {
+            return refusal(Status::NoSolution, "its corners are not in cyclic order".to_string());
+        }
+        Ok(s / quad.unit())
+    };
+    (0..points.len() - 1).map(step).collect()
 }
 
 /// A number without bounds mapped to between `−bound` and `bound`, 0 to 0 with the slope 1; and the slope.

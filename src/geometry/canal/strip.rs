@@ -75,8 +75,9 @@ impl Strip {
     /// # Errors
     /// Status `Degenerate`: three corners are on a line, in a strip that this module did not make.
     pub fn circles(&self) -> Result<Vec<Circle>> {
-        let circle = |k: usize| Circle::through(self.guide[k + 1], self.border[k], self.guide[k]);
-        (0..self.guide.len() - 1).map(|k| circle(k).ok_or_else(|| on_a_line(k))).collect()
+        let quads = self.guide.windows(2).zip(&self.border).enumerate();
+        let circle = |(k, (p, &q)): (usize, (&[DVec3], _))| Circle::through(p[1], q, p[0]).ok_or_else(|| on_a_line(k));
+        quads.map(circle).collect()
     }
 }
 
