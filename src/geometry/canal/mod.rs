@@ -4,3 +4,4 @@
 pub mod combescure;
 pub mod frame;
 pub mod inversion;
+pub mod normals;
