@@ -85,9 +85,44 @@ impl ClosestPoints {
     /// The point of all pieces that is nearest to `point`; of several, the one of the first piece. Finite for any finite
     /// `point`, even where squared distances overflow (beyond about 1e154): it then is a point of some piece.
     pub fn nearest(&self, point: DVec3) -> DVec3 {
+        self.search(point).point
+    }
+
+    /// [`ClosestPoints::nearest`] and the index of its piece, in the order given; segment `i` runs from point `i` of the
+    /// polyline to the next.
+    pub fn nearest_on_piece(&self, point: DVec3) -> (DVec3, usize) {
+        let best = self.search(point);
+        // Only for a point that is not finite was no piece found.
+        (best.point, if best.index == usize::MAX { 0 } else { best.index })
+    }
+
+    /// The pieces nearer to `point` than `distance`, as their indices, ascending, and their distances.
+    pub fn within(&self, point: DVec3, distance: f64) -> Vec<(usize, f64)> {
+        let mut found = Vec::new();
+        let mut nodes = vec![self.tree.root()];
+        while let Some(node) = nodes.pop() {
+            for child in node.children() {
+                match child {
+                    RTreeNode::Leaf(piece) => {
+                        let apart = piece.nearest(point).distance(point);
+                        found.extend((apart < distance).then_some((piece.index, apart)));
+                    }
+                    RTreeNode::Parent(parent) => {
+                        // Squares of tiny distances vanish: then look rather than miss.
+                        let squared = parent.envelope().distance_2(&point.to_array());
+                        nodes.extend((squared <= distance * distance).then_some(parent));
+                    }
+                }
+            }
+        }
+        found.sort_unstable_by_key(|&(index, _)| index);
+        found
+    }
+
+    fn search(&self, point: DVec3) -> Best {
         let mut best = Best { point, squared_distance: f64::INFINITY, index: usize::MAX };
         search(self.tree.root(), point, &mut best);
-        best.point
+        best
     }
 }
 
@@ -266,6 +301,13 @@ mod tests {
             let expected = least(segments().map(|(a, b)| distance_to_segment(a, b, p)));
             let excess = (found.distance(p) - expected).abs() / (1.0 + expected);
             assert!(excess < EXCESS, "case {case}: at {} instead of {expected}", found.distance(p));
+            let reach = expected * (1.0 + 3.0 * stream.next());
+            let near = curve.within(p, reach).into_iter();
+            let all = segments().map(|(a, b)| distance_to_segment(a, b, p)).enumerate();
+            let differ = |(a, b): ((usize, f64), (usize, f64))| a.0 != b.0 || (a.1 - b.1).abs() > 1e-12 * (1.0 + b.1);
+            // No distance is at the reach itself but by chance.
+            assert!(!near.clone().zip(all.clone().filter(|&(_, apart)| apart < reach)).any(differ), "case {case}");
+            assert_eq!(near.len(), all.filter(|&(_, apart)| apart < reach).count(), "case {case}");
             // It is a point of the polyline.
             assert!(least(segments().map(|(a, b)| distance_to_segment(a, b, found))) < 1e-12, "case {case}");
             worst = worst.max(excess);
@@ -326,6 +368,12 @@ mod tests {
             let nearest = ClosestPoints::of_polyline(&square, false).unwrap().nearest(DVec3::ZERO);
             let expected = 0.5 * (square[0] + square[1]);
             assert!(nearest.distance(expected) < 1e-15, "{nearest} is not {expected}");
+            // Off the middle of one side, its piece in the first time around.
+            for side in 0..4 {
+                let beside = 0.6 * (square[side] + square[side + 1]);
+                let curve = ClosestPoints::of_polyline(&square, false).unwrap();
+                assert_eq!(curve.nearest_on_piece(beside), (curve.nearest(beside), side));
+            }
         }
     }
 
