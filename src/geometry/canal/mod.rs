@@ -3,12 +3,16 @@
 
 mod base;
 pub mod bases;
+pub mod c_canal;
 pub mod chain;
+pub mod circle_strip;
+pub mod circles;
 pub mod closing;
 pub mod combescure;
 #[cfg(test)]
 mod cyclide;
 pub mod file;
+pub mod fit;
 pub mod folds;
 pub mod frame;
 pub mod inversion;
@@ -17,6 +21,7 @@ pub mod m_revolution;
 pub mod membrane;
 pub mod net;
 pub mod node_axes;
+pub mod normals;
 pub mod panels;
 pub mod parallel;
 pub mod patch;
@@ -30,11 +35,4 @@ pub mod spherical_guide;
 pub mod strip;
 pub mod strip_of_circles;
 pub mod surface;
-pub mod circle_strip;
-pub mod circles;
-pub mod combescure;
-pub mod fit;
-pub mod frame;
-pub mod inversion;
-pub mod normals;
 pub mod two_curves;
