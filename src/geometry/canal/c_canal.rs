@@ -383,8 +383,9 @@ impl Section {
                 found
             }
         };
-        result.attainable.push(range);
-        result.lengths.push(found.length());
+        let length = found.length();
+        result.attainable.push([range[0].min(length), range[1].max(length)]);
+        result.lengths.push(length);
         Ok(found)
     }
 }
@@ -425,10 +426,14 @@ fn root(trials: &[(f64, Section)], at: &At<'_>, misfit: &dyn Fn(&Section) -> f64
     Some(found)
 }
 
-/// The section of the least `cost`: the best trial, and from there by golden section between its neighbours.
+/// The section of the least `cost`: the best trial that is better than both neighbours, and from there by golden section between
+/// these. Only where there is none, the best trial at an end: for a second curve the cost falls towards the far end of the section
+/// before, which is on it.
 fn least(trials: &[(f64, Section)], at: &At<'_>, cost: &dyn Fn(&Section) -> f64) -> Option<Section> {
     let costs: Vec<f64> = trials.iter().map(|(_, section)| cost(section)).collect();
-    let best = (0..trials.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]))?;
+    let is_dip = |&i: &usize| i > 0 && i + 1 < costs.len() && costs[i] < costs[i - 1] && costs[i] <= costs[i + 1];
+    let best_of = |i: &mut dyn Iterator<Item = usize>| i.min_by(|&a, &b| costs[a].total_cmp(&costs[b]));
+    let best = best_of(&mut (0..costs.len()).filter(is_dip)).or_else(|| best_of(&mut (0..costs.len())))?;
     let (mut low, mut high) = (trials[best.saturating_sub(1)].0, trials[(best + 1).min(trials.len() - 1)].0);
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let mut found = at(trials[best].0)?;

@@ -120,11 +120,9 @@ impl CircleStrip {
                     .map_err(|e| e.at(format!("points[{k}]")))
             })
             .collect::<Result<Vec<_>>>()?;
-        let feet: Vec<f64> = [first.foot, touching[0].foot.parameter]
-            .into_iter()
-            .chain(touching[1..].iter().map(|touching| touching.foot.parameter))
-            .chain([final_.foot])
-            .collect();
+        let mut feet = vec![first.foot];
+        feet.extend(touching.iter().map(|touching| touching.foot.parameter));
+        feet.push(final_.foot);
         let crossings = (0..points.len()).map(|k| crossing(curve, &circles[k], [feet[k], feet[k + 1]])).collect();
         let gap = |(frame, &tangent): (&Frame, &DVec3)| frame.t1.distance(tangent);
         let tangent_gap = frames.iter().zip(guide.tangents()).map(gap).fold(0.0, f64::max);
@@ -234,9 +232,9 @@ fn crossing(curve: &NearestOnCurve<'_>, circle: &Circle, [from, to]: [f64; 2]) -
         let jet = curve.at(t);
         let height = (jet.point - circle.center).dot(circle.normal);
         if height < 0.0 {
-            low = t
+            low = t;
         } else {
-            high = t
+            high = t;
         }
         let newton = t - height / jet.first.dot(circle.normal);
         let next = if (newton - low) * (newton - high) < 0.0 { newton } else { 0.5 * (low + high) };

@@ -1,14 +1,14 @@
 //! Meshes on strips of circles of which consecutive ones are on one sphere.
 //!
-//! A plane through one edge between two such circles meets each in a second point, and the four points are on a circle: that in
-//! which the plane meets the sphere. So a mesh is known from its points on the first circle and one column (section 4.1, Figs.
-//! 12 and 13): point `(i + 1, j + 1)` is where the plane through `(i, j)`, `(i, j + 1)` and `(i + 1, j)` meets circle `i + 1` again. (The
-//! paper prints the new point with the index of the known one.)
+//! A plane through one edge between two such circles meets each in a second point, and the four points are on a circle: that
+//! in which the plane meets the sphere. So a mesh is known from its points on the first circle and one column (section 4.1,
+//! Figs. 12 and 13): point `(i + 1, j + 1)` is where the plane through `(i, j)`, `(i, j + 1)` and `(i + 1, j)` meets circle `i + 1`
+//! again. (The paper prints the new point with the index of the known one.)
 //!
 //! Not every column will do. If the tangents of the circles in its points are mirror images of each other, all lines from points
 //! of a circle to their partners on the next one meet in one point (there are two such points for each pair of circles on a
 //! sphere); then any two columns make circular quads. Else columns that follow each other zigzag about such ones, and an odd
-//! number of them does not close around the circles. [`column`] finds columns with mirrored tangents; a guide of
+//! number of them does not close around the circles. [`column()`] finds columns with mirrored tangents; a guide of
 //! [`CircleStrip`](super::circle_strip::CircleStrip) is one.
 
 use std::f64::consts::{PI, TAU};
@@ -154,8 +154,8 @@ fn above(circle: &Circle, start: DVec3, point: DVec3, normal: DVec3) -> Result<(
     }
 }
 
-/// The grid of which row `i` is on circle `i`, with row 0 given; it closes around the circles if `wraps`. The guide, a point of each
-/// circle, is column 0 where it goes through the first point; else it only leads from circle to circle.
+/// The grid of which row `i` is on circle `i`, with row 0 given; it closes around the circles if `wraps`. The guide, a point of
+/// each circle, is column 0 where it goes through the first point; else it only leads from circle to circle.
 ///
 /// # Errors
 /// Fewer than 2 circles or 2 points of row 0 (3 if it wraps), another number of guide points, or a number that is not finite.

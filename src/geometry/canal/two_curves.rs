@@ -120,10 +120,8 @@ impl CenterLine {
             let (distance, along) = (w.length(), self.direction.dot(w));
             if distance - self.half_chord <= MEETING * extent {
                 let reason = if self.half_chord > 0.0 {
-                    let chord = 2.0 * self.half_chord;
-                    format!(
-                        "the second curve is {distance} from the middle of an edge of length {chord}: it must be beyond its ends"
-                    )
+                    let least = self.half_chord;
+                    format!("the second curve is {distance} from the middle of the edge: expected more than {least}")
                 } else {
                     format!("the second curve meets the first here: it comes as near as {distance:e}")
                 };
