@@ -11,6 +11,7 @@ pub mod closing;
 pub mod combescure;
 #[cfg(test)]
 mod cyclide;
+pub mod families;
 pub mod file;
 pub mod fit;
 pub mod folds;
@@ -26,6 +27,7 @@ pub mod panels;
 pub mod parallel;
 pub mod patch;
 mod polyline;
+pub mod properties;
 mod quad;
 pub mod quality;
 pub mod revolution_centers;
