@@ -7,6 +7,7 @@ Recipes make a problem from a mesh and solve it. The library names them (:func:`
 here, such as ``shapeop.planarize(mesh)``.
 """
 
+from . import canal
 from ._library import (
     LIBRARY_PATH,
     ArgumentError,
@@ -15,6 +16,7 @@ from ._library import (
     ClosedError,
     Error,
     ErrorCode,
+    GeometryError,
     IndexRangeError,
     InvalidValueError,
     LoadError,
@@ -58,6 +60,7 @@ __all__ = [
     "Fairness",
     "FairnessKind",
     "Force",
+    "GeometryError",
     "Handle",
     "IndexRangeError",
     "InvalidValueError",
@@ -80,6 +83,7 @@ __all__ = [
     "Solver",
     "UnboundedError",
     "UnknownIdError",
+    "canal",
     "constraint_types",
     "measure_faces",
     "measure_names",

@@ -32,6 +32,14 @@ class ErrorCode(IntEnum):
     INVALID_INPUT = _abi.SO_INVALID_INPUT
     TOO_LARGE = _abi.SO_TOO_LARGE
     INTERNAL = _abi.SO_INTERNAL
+    NOT_GRID = _abi.SO_NOT_GRID
+    NOT_PLANAR = _abi.SO_NOT_PLANAR
+    NOT_CIRCULAR = _abi.SO_NOT_CIRCULAR
+    DEGENERATE = _abi.SO_DEGENERATE
+    NO_INTERSECTION = _abi.SO_NO_INTERSECTION
+    NO_SOLUTION = _abi.SO_NO_SOLUTION
+    SINGULAR = _abi.SO_SINGULAR
+    NOT_CLOSED = _abi.SO_NOT_CLOSED
 
 
 class Error(Exception):
@@ -74,6 +82,10 @@ class UnboundedError(Error, RuntimeError):
     """A force acts along a motion that no constraint resists."""
 
 
+class GeometryError(Error, ValueError):
+    """The points are not what the construction needs, or it has no solution for them; ``code`` says which."""
+
+
 class LoadError(Error, ImportError):
     """The library file is missing, cannot be loaded or has another ABI version."""
 
@@ -98,6 +110,14 @@ _CLASSES: dict[int, type[Error]] = {
     ErrorCode.BUSY: BusyError,
     ErrorCode.INVALID_HANDLE: ClosedError,
     ErrorCode.INVALID_INPUT: InvalidValueError,
+    ErrorCode.NOT_GRID: GeometryError,
+    ErrorCode.NOT_PLANAR: GeometryError,
+    ErrorCode.NOT_CIRCULAR: GeometryError,
+    ErrorCode.DEGENERATE: GeometryError,
+    ErrorCode.NO_INTERSECTION: GeometryError,
+    ErrorCode.NO_SOLUTION: GeometryError,
+    ErrorCode.SINGULAR: GeometryError,
+    ErrorCode.NOT_CLOSED: GeometryError,
 }
 
 
