@@ -902,7 +902,7 @@ fn versions_and_error_texts_are_told() {
     for &status in shapeop::error::Status::ALL {
         assert_eq!(text(shapeop_errorText(status as c_int)), status.text());
     }
-    for none in [-1, 4, 15, 27, c_int::MAX, c_int::MIN] {
+    for none in [-1, 4, 15, 99, c_int::MAX, c_int::MIN] {
         assert_eq!(text(shapeop_errorText(none)), "not an error code of this library");
     }
 }
