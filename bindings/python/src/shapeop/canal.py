@@ -1,11 +1,13 @@
 """Super-canal surfaces: circular nets from two or three curves (Mesnil, Douthe, Baverel, Léger 2018).
 
-A grid is an array of shape (rows, columns, 3), or nested lists; direction 1 goes from row to row, along the guide curve, direction
-2 from column to column, along the section. ``wraps`` says for both whether the first follows the last. A frame is given by its
-two unit tangents ``(t1, t2)``, and comes back with the normal as third. A circle is ``[cx, cy, cz, nx, ny, nz, radius]``.
+A grid is an array of shape (rows, columns, 3), or nested lists; direction 1 goes from row to row, along the guide
+curve, direction 2 from column to column, along the section. ``wraps`` says for both whether the first follows the
+last. A frame is given by its two unit tangents ``(t1, t2)``, and comes back with the normal as third. A circle is
+``[cx, cy, cz, nx, ny, nz, radius]``.
 
 What comes back are float64 arrays, or nested lists where numpy is not installed. What the library refuses raises
-:class:`shapeop.Error`; geometry that does not fit (quads without circles, curves that do not meet) a :class:`shapeop.GeometryError`.
+:class:`shapeop.Error`; geometry that does not fit (quads without circles, curves that do not meet) a
+:class:`shapeop.GeometryError`.
 """
 
 from __future__ import annotations
@@ -237,7 +239,7 @@ class _Grid:
 
 
 class _Watch:
-    """From the library's progress callback to the caller's: no exception crosses the boundary, and Ctrl-C ends the call."""
+    """From the library's progress callback to the caller's: no exception crosses over; Ctrl-C ends the call."""
 
     def __init__(self, progress: Optional[ProgressFunction]) -> None:
         self._progress = progress
@@ -277,8 +279,9 @@ class _Watch:
 class CanalSurface:
     """A circular net with a frame at each point, and the transformations that made it of its base.
 
-    ``grid``: an array of shape (rows, columns, 3) whose quads have circles; ``frame``: the unit tangents ``(t1, t2)`` at its first
-    point. It is deleted by :meth:`close`, at the end of a ``with`` block, or when nothing refers to it any more.
+    ``grid``: an array of shape (rows, columns, 3) whose quads have circles; ``frame``: the unit tangents ``(t1, t2)``
+    at its first point. It is deleted by :meth:`close`, at the end of a ``with`` block, or when nothing refers to it
+    any more.
 
     >>> torus = CanalSurface.revolution([[2, 0, 0.5], [1.6, 0, 0.3], [1.6, 0, -0.3], [2, 0, -0.5]], columns=12)
     >>> torus.invert([0, 0, 3], 4)
@@ -320,7 +323,7 @@ class CanalSurface:
         angle: float = 6.283185307179586,
         columns: int = 24,
     ) -> CanalSurface:
-        """The surface of revolution of a profile in a plane through the axis; ``angle`` in radians, a full turn wraps."""
+        """The surface of revolution of a profile in a plane through the axis; a full turn of ``angle`` wraps."""
         block = _arrays.points(profile, "profile")
         point, direction = _vector(axis_point, "axis_point"), _vector(axis_direction, "axis_direction")
         count = _arrays.integer(columns, "columns")
@@ -352,8 +355,8 @@ class CanalSurface:
     ) -> CanalSurface:
         """The M-revolution surface over a planar curve from ``P1`` to ``P4``, whose arches rise to the side of ``up``.
 
-        ``p2`` and ``p3`` are on one circle with the curve's ends. ``center`` says which center of inversion to take, with the
-        angle or ratio ``value`` or the ``point``.
+        ``p2`` and ``p3`` are on one circle with the curve's ends. ``center`` says which center of inversion to take,
+        with the angle or ratio ``value`` or the ``point``.
         """
         kind = _arrays.member(Center, center, "center")
         handle = lib.shapeop_canalMRevolution(
@@ -415,7 +418,8 @@ class CanalSurface:
     ) -> CanalSurface:
         """The M-moulding surface through a planar curve and a rail in space that starts on it.
 
-        ``p3``: the far corner, on one circle with the first point and both ends; without it ``point`` is the center of inversion.
+        ``p3``: the far corner, on one circle with the first point and both ends; without it ``point`` is the center
+        of inversion.
         """
         handle = lib.shapeop_canalMMoulding(
             *_arrays.points(curve, "curve"),
@@ -531,14 +535,14 @@ class CanalSurface:
         return text(lib.shapeop_canalText(self._handle))
 
     def evaluate(self, i: int, j: int, u: float, v: float) -> tuple[Any, Any]:
-        """The point and the frame (t1, t2, normal) of the patch over face (i, j) at the fractions ``u`` and ``v`` of its arcs."""
+        """The point and the frame of the patch over face (i, j) at the fractions ``u`` and ``v`` of its arcs."""
         point, frame = _doubles(3), _doubles(9)
         place = (_arrays.integer(i, "i"), _arrays.integer(j, "j"), _arrays.real(u, "u"), _arrays.real(v, "v"))
         check(lib.shapeop_canalEvaluate(self._handle, *place, point, frame))
         return _arrays.doubles(point), _arrays.shaped(frame, 3, 3)
 
     def refined(self, one: int, two: int) -> CanalSurface:
-        """The surface whose faces are cut into ``one`` by ``two`` pieces; the points of this one stay. It has no chain."""
+        """The surface whose faces are cut into ``one`` by ``two`` pieces; points stay. It has no chain."""
         pieces = (_arrays.integer(one, "one"), _arrays.integer(two, "two"))
         return self._of(lib.shapeop_canalRefined(self._handle, *pieces))
 
@@ -641,7 +645,7 @@ def close_lengths(grid: Any, column: Any, row: Any, wraps: Wraps) -> tuple[Any, 
 def combescure(
     grid: Any, column: Any, row: Any, origin: Optional[Any] = None, wraps: Wraps = (False, False)
 ) -> tuple[Any, int]:
-    """The parallel grid with these lengths of edges along column 0 and row 0, and how many edges point the other way."""
+    """The parallel grid with these lengths along column 0 and row 0, and how many edges point the other way."""
     own, columns, rows = _Grid(grid, wraps), _arrays.numbers(column, "column"), _arrays.numbers(row, "row")
     out, reversed_count = _doubles(3 * own.count), ctypes.c_int()
     first = _optional(origin, "origin")
@@ -676,7 +680,12 @@ def nearest_parallel(points: Any, quads: Any, handles: Any, targets: Any) -> Any
 
 def _strip(function: Any, points: Any, start: Any, *arguments: Any, is_full: bool = False) -> Strip:
     count = points.length
-    border, lengths, attainable, deviation = _doubles(3 * count), _doubles(count), _doubles(count - 1), ctypes.c_double()
+    border, lengths, attainable, deviation = (
+        _doubles(3 * count),
+        _doubles(count),
+        _doubles(count - 1),
+        ctypes.c_double(),
+    )
     flipped, projected = _ints(count - 1), _ints(count)
     rest = (attainable, flipped, projected, ctypes.byref(deviation)) if is_full else (flipped,)
     check(function(*points, _vector(start, "start"), *arguments, border, lengths, *rest))
@@ -701,8 +710,8 @@ def strip(
 ) -> Strip:
     """The strip of circular quads along ``points`` from ``start`` whose crossing edges have the given lengths.
 
-    ``strict``: quads that cross themselves are refused. ``project_lengths``: a length that is not attainable is replaced by the
-    nearest that is. ``fit_start``: the first crossing edge is turned to where the lengths can go on.
+    ``strict``: quads that cross themselves are refused. ``project_lengths``: a length that is not attainable is
+    replaced by the nearest that is. ``fit_start``: the first crossing edge is turned to where the lengths can go on.
     """
     flags = int(strict) | int(project_lengths) << 1 | int(fit_start) << 2
     guide = _arrays.points(points)
@@ -736,7 +745,7 @@ def strip_circles(guide: Any, border: Any) -> Any:
 
 
 def strip_of_circles(circles: Any, start: Optional[Any] = None, end: Optional[Any] = None) -> tuple[Any, Any, float]:
-    """The guide and the border of the strip whose quads have these circles, and how far points are from their circles."""
+    """The guide and the border of the strip whose quads have these circles, and how far points are off them."""
     block = _circles(circles, "circles")
     guide, border, distance = _doubles(3 * block.length + 3), _doubles(3 * block.length + 3), ctypes.c_double()
     ends = (_optional(start, "start"), _optional(end, "end"))
@@ -813,8 +822,8 @@ def close_strip(guide: Any, border: Any, last: Any) -> Closed:
 def fit(guide: Any, curve: Any, *, guide_closed: bool = False, curve_closed: bool = False, **options: Any) -> Fit:
     """The canal surface through the spline of ``guide`` that touches the spline of ``curve``.
 
-    ``options``: the fields of ``shapeop_canal_fit_options`` in the C header, such as ``circle_count`` and ``angle``; ``section``
-    and ``spacing`` also by name.
+    ``options``: the fields of ``shapeop_canal_fit_options`` in the C header, such as ``circle_count`` and ``angle``;
+    ``section`` and ``spacing`` also by name.
     """
     a, b = _arrays.points(guide, "guide"), _arrays.points(curve, "curve")
     asked = _abi.shapeop_canal_fit_options(struct_size=ctypes.sizeof(_abi.shapeop_canal_fit_options))
@@ -825,7 +834,12 @@ def fit(guide: Any, curve: Any, *, guide_closed: bool = False, curve_closed: boo
     _set(asked, options)
     told = _abi.shapeop_canal_fit_report(struct_size=ctypes.sizeof(_abi.shapeop_canal_fit_report))
     capacity = max(asked.circle_count, a.length) + 1
-    circles, spheres, circle_count, sphere_count = _doubles(7 * capacity), _doubles(4 * capacity), ctypes.c_int(), ctypes.c_int()
+    circles, spheres, circle_count, sphere_count = (
+        _doubles(7 * capacity),
+        _doubles(4 * capacity),
+        ctypes.c_int(),
+        ctypes.c_int(),
+    )
     handle = lib.shapeop_canalFit(
         *a,
         int(_arrays.truth(guide_closed, "guide_closed")),
@@ -865,7 +879,7 @@ def c_canal(
     project_lengths: bool = False,
     progress: Optional[ProgressFunction] = None,
 ) -> CCanal:
-    """The C-canal surface along ``guide`` from a convex planar ``section``: by ``lengths`` of the sections or to a second ``curve``."""
+    """The C-canal surface along ``guide`` from a convex planar ``section``: by ``lengths`` or to a ``curve``."""
     if (lengths is None) == (curve is None):
         raise ArgumentError("lengths: expected either lengths or a curve")
     a, b = _arrays.points(guide, "guide"), _arrays.points(section, "section")
