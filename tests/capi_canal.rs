@@ -99,7 +99,7 @@ fn a_chain_is_made_undone_and_read_again_from_its_text() {
         assert_eq!(shapeop_canalCombescureFactors(surface.0, column.as_ptr(), 3, row.as_ptr(), 4), SO_SUCCESS);
         assert_eq!(shapeop_canalInvert(surface.0, center.as_ptr(), 4.0), SO_SUCCESS);
     }
-    assert_eq!((shapeop_canalChainCount(surface.0), text(shapeop_canalFamily(surface.0))), (2, "MC-revolution".into()));
+    assert_eq!((shapeop_canalChainCount(surface.0), text(shapeop_canalFamily(surface.0))), (2, "M-moulding".into()));
     let json = CString::new(text(shapeop_canalText(surface.0))).unwrap();
     // SAFETY: a live text.
     let again = Surface(unsafe { shapeop_canalFromJson(json.as_ptr()) });

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from math import cos, dist, pi, sin
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -129,6 +132,38 @@ def test_the_progress_function_cancels_and_its_exceptions_arrive() -> None:
         canal.node_axes(grid, progress=fail)
 
 
+def test_two_parallel_lines_on_a_cylinder() -> None:
+    guide = [[float(k), 0.0, 0.0] for k in range(6)]
+    curve = [[float(k), 2.0, 0.0] for k in range(-2, 9)]
+    spheres, flags = canal.touching_spheres(guide, [[0, 1, 1]] * 6, curve)
+    # A normal at 45 degrees to the joining direction: the radius is 2 / (2 cos 45 deg).
+    assert all(abs(float(sphere[3]) - 2**0.5) < 1e-9 for sphere in spheres)
+    assert flags == [0] * 6
+    found = canal.fit(guide, curve, circle_count=5, column_count=8, has_normal=1, normal_y=-1, normal_z=-1)
+    assert found.surface.shape == (5, 8)
+    assert found.surface.wraps == (False, True)
+    # Spheres pass through both ends of an edge 1.25 long, and touch the line at its middle: the centers are nearer by h^2/4.
+    radius = (4 - 0.625**2) / (2 * 2**0.5)
+    assert all(abs(float(circle[6]) - radius) < 1e-9 for circle in found.circles)
+    assert all(abs(float(sphere[3]) - (radius**2 + 0.625**2) ** 0.5) < 1e-9 for sphere in found.spheres)
+
+
+def test_frames_and_closing() -> None:
+    ring = [[cos(2 * pi * k / 5), sin(2 * pi * k / 5), 0] for k in range(5)]
+    assert canal.holonomy(ring).closes
+    frame = canal.frame_of_tangent([0, 1, 0], [0, 0, 1])
+    assert dist(list(map(float, frame[2])), [0, 0, 1]) < 1e-15
+    assert canal.parallel_on_sphere(ring) is not None
+    assert abs(canal.invert_complex([2 + 0j], 0j, 4.0)[0] - 2) < 1e-15
+    plane, is_plane = canal.invert_sphere([1, 0, 0, 1], [0, 0, 0], 2)
+    assert is_plane
+    assert abs(float(plane[0]) - 1) < 1e-12
+    assert len(canal.translation(ring[:3], [[0, 0, 0], [0, 0, 1]])) == 3
+    line, tangents = canal.curve_points([[0, 0, 0], [3, 0, 0]], 4)
+    assert [round(float(point[0]), 12) for point in line] == [0, 1, 2, 3]
+    assert float(tangents[0][0]) == 1
+
+
 def test_mistakes_are_told() -> None:
     with pytest.raises(shapeop.GeometryError, match="profile") as refused:
         canal.CanalSurface.revolution([[2, 0, 0], [2, 1, 1]])
@@ -142,3 +177,12 @@ def test_mistakes_are_told() -> None:
     with pytest.raises(shapeop.ClosedError):
         surface.undo()
     assert canal.family_names()[0] == "canal"
+
+
+def test_the_example_runs(repository: Path, tmp_path: Path) -> None:
+    script = repository / "bindings" / "python" / "examples" / "super_canal.py"
+    parts = tmp_path / "parts.json"
+    done = subprocess.run([sys.executable, str(script), str(parts)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "132 panels" in done.stdout
+    assert len(json.loads(parts.read_text(encoding="utf-8"))["panels"]) == 132

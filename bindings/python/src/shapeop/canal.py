@@ -675,6 +675,105 @@ def nearest_parallel(points: Any, quads: Any, handles: Any, targets: Any) -> Any
     return _arrays.shaped(out, block.length, 3)
 
 
+def invert_complex(points: Any, center: complex, ratio: float) -> list[complex]:
+    """The images of complex numbers under an inversion of the plane."""
+    numbers = [complex(point) for point in points]
+    block = _arrays.numbers([part for number in numbers for part in (number.real, number.imag)], "points")
+    out, middle = _doubles(2 * len(numbers)), _arrays.numbers([center.real, center.imag], "center").pointer
+    check(lib.shapeop_canalInvertComplex(block.pointer, len(numbers), middle, _arrays.real(ratio, "ratio"), out))
+    return [complex(out[2 * k], out[2 * k + 1]) for k in range(len(numbers))]
+
+
+def invert_sphere(sphere: Any, center: Any, ratio: float) -> tuple[Any, bool]:
+    """The image of a sphere ``[x, y, z, radius]``, and whether it is a plane: see ``shapeop_canalInvertSphere``."""
+    values = [float(number) for number in sphere]
+    if len(values) != 4:
+        raise ArgumentError(f"sphere: expected 4 numbers, found {_arrays.found(sphere)}")
+    out, is_plane = _doubles(7), ctypes.c_int()
+    middle, power = _vector(center, "center"), _arrays.real(ratio, "ratio")
+    source = _vector(values[:3], "sphere")
+    check(lib.shapeop_canalInvertSphere(source, values[3], middle, power, out, ctypes.byref(is_plane)))
+    return _arrays.doubles(out), bool(is_plane.value)
+
+
+def invert_plane(point: Any, normal: Any, center: Any, ratio: float) -> tuple[Any, bool]:
+    """The image of a plane, and whether it is a plane again: see ``shapeop_canalInvertSphere``."""
+    out, is_plane = _doubles(7), ctypes.c_int()
+    plane = (_vector(point, "point"), _vector(normal, "normal"))
+    middle, power = _vector(center, "center"), _arrays.real(ratio, "ratio")
+    check(lib.shapeop_canalInvertPlane(*plane, middle, power, out, ctypes.byref(is_plane)))
+    return _arrays.doubles(out), bool(is_plane.value)
+
+
+def check_parallel(a: Any, b: Any, edges: Any) -> tuple[float, int]:
+    """The largest sine between edges, pairs of point indices, of two meshes, and how many point the other way."""
+    first, second, pairs = _arrays.points(a, "a"), _arrays.points(b, "b"), _arrays.face_lists(edges, "edges", 2)
+    if first.length != second.length:
+        raise ArgumentError(f"b: expected {first.length} points, found {second.length}")
+    sine, reversed_count = ctypes.c_double(), ctypes.c_int()
+    meshes = (first.pointer, second.pointer, first.length, pairs.indices.pointer, pairs.list_count)
+    check(lib.shapeop_canalCheckParallel(*meshes, ctypes.byref(sine), ctypes.byref(reversed_count)))
+    return sine.value, reversed_count.value
+
+
+def translation(rail: Any, profile: Any, factors: Optional[Any] = None) -> Any:
+    """The surface of translation, (rows, columns, 3), or of scale-translation with one factor for each rail point."""
+    a, b = _arrays.points(rail, "rail"), _arrays.points(profile, "profile")
+    own = None if factors is None else _of_length(factors, "factors", a.length)
+    points, capacity = _doubles(3 * a.length * b.length), a.length * b.length
+    count, rows, columns = (ctypes.c_int() for _ in range(3))
+    outputs = (points, capacity, ctypes.byref(count), ctypes.byref(rows), ctypes.byref(columns), None)
+    check(lib.shapeop_canalTranslation(*a, *b, own, *outputs))
+    used = 3 * count.value
+    return _arrays.shaped((ctypes.c_double * used)(*points[:used]), rows.value, columns.value, 3)
+
+
+def grid_of_mesh(points: Any, quads: Any, component: int = 0) -> tuple[list[list[int]], Wraps, int]:
+    """A component of a mesh of quads as a grid: point indices in rows, what wraps, and the number of components."""
+    block, lists = _arrays.points(points), _arrays.face_lists(quads, "quads", 4)
+    total, rows, columns, bits, count = (ctypes.c_int() for _ in range(5))
+    indices = _ints(block.length)
+    mesh = (*block, lists.indices.pointer, lists.list_count, _arrays.integer(component, "component"))
+    sizes = tuple(ctypes.byref(each) for each in (total, rows, columns, bits))
+    check(lib.shapeop_canalGridOfMesh(*mesh, *sizes, indices, block.length, ctypes.byref(count)))
+    own = [list(indices[i * columns.value : (i + 1) * columns.value]) for i in range(rows.value)]
+    return own, (bool(bits.value & 1), bool(bits.value & 2)), total.value
+
+
+def frame_of_angles(polar: float, azimuth: float, turn: float = 0.0) -> Any:
+    """The frame (t1, t2, normal) whose normal is at ``polar`` from z and ``azimuth`` from x, turned about it."""
+    out = _doubles(9)
+    angles = (_arrays.real(azimuth, "azimuth"), _arrays.real(polar, "polar"), _arrays.real(turn, "turn"))
+    check(lib.shapeop_canalFrameOfAngles(*angles, out))
+    return _arrays.shaped(out, 3, 3)
+
+
+def frame_of_tangent(tangent: Any, normal: Any, direction: int = 1) -> Any:
+    """The frame with a tangent in direction 1 or 2 and the normal as near as possible to ``normal``."""
+    out = _doubles(9)
+    vectors = (_vector(tangent, "tangent"), _vector(normal, "normal"))
+    check(lib.shapeop_canalFrameOfTangent(*vectors, _arrays.integer(direction, "direction"), out))
+    return _arrays.shaped(out, 3, 3)
+
+
+def grid_frames(grid: Any, frame: Any, wraps: Wraps = (False, False)) -> tuple[Any, float]:
+    """The frames at all points of a circular grid, (rows, columns, 3, 3), and their gap across seams."""
+    own, gap = _Grid(grid, wraps), ctypes.c_double()
+    out = _doubles(9 * own.count)
+    check(lib.shapeop_canalGridFrames(*own.arguments, _frame(frame), out, ctypes.byref(gap)))
+    return _arrays.shaped(out, own.rows, own.columns, 3, 3), gap.value
+
+
+def folds(grid: Any, wraps: Wraps = (False, False)) -> tuple[Any, Any, list[int]]:
+    """Where a grid folds: per row how far it reaches towards the evolute of column 0 (1: up to it); per face the least
+    ratio of opposite edges, and flags: 1 flipped, 2 shrunk."""
+    own = _Grid(grid, wraps)
+    count = max(own.spans[0], 0) * max(own.spans[1], 0)
+    evolute, edges, flags = _doubles(own.rows), _doubles(count), _ints(count)
+    check(lib.shapeop_canalFolds(*own.arguments, evolute, None, edges, flags))
+    return _arrays.doubles(evolute), _arrays.doubles(edges), list(flags)
+
+
 # Strips.
 
 
@@ -816,6 +915,47 @@ def close_strip(guide: Any, border: Any, last: Any) -> Closed:
     return Closed(_arrays.shaped(out, a.length + 1, 3), _arrays.doubles(circle), case.value, _truths(flipped))
 
 
+def lengths_between(points: Any, first: float, last: float) -> Any:
+    """Lengths of crossing edges that go from ``first`` to ``last`` evenly along a polyline."""
+    block = _arrays.points(points)
+    out = _doubles(block.length)
+    check(lib.shapeop_canalLengthsBetween(*block, _arrays.real(first, "first"), _arrays.real(last, "last"), out))
+    return _arrays.doubles(out)
+
+
+def edges_of_border(points: Any, length: float) -> Any:
+    """The lengths of the edges of a border that is ``length`` long in all, in the proportions of the guide's."""
+    block = _arrays.points(points)
+    out = _doubles(block.length - 1)
+    check(lib.shapeop_canalEdgesOfBorder(*block, _arrays.real(length, "length"), out))
+    return _arrays.doubles(out)
+
+
+def closed_frame(points: Any, wish: Any) -> Any:
+    """The frame nearest to ``wish`` with which a surface along a closed polygon is smooth across the seam."""
+    out = _doubles(9)
+    check(lib.shapeop_canalClosedFrame(*_arrays.points(points), _frame(wish, "wish"), out))
+    return _arrays.shaped(out, 3, 3)
+
+
+def parallel_on_sphere(points: Any) -> Optional[Any]:
+    """The closed polygon on a sphere with edges parallel to those of a closed polygon; ``None`` if there is none."""
+    block, count = _arrays.points(points), ctypes.c_int()
+    out = _doubles(3 * block.length)
+    check(lib.shapeop_canalParallelOnSphere(*block, out, block.length, ctypes.byref(count), None))
+    used = 3 * count.value
+    return _arrays.shaped((ctypes.c_double * used)(*out[:used]), count.value, 3) if used else None
+
+
+def strip_energy(guide: Any, border: Any, frame: Any) -> float:
+    """What :func:`smooth` lowers: the sum of the squared curvatures of all arcs of a strip."""
+    a, b, out = _arrays.points(guide, "guide"), _arrays.points(border, "border"), ctypes.c_double()
+    if a.length != b.length:
+        raise ArgumentError(f"border: expected {a.length} points, found {b.length}")
+    check(lib.shapeop_canalStripEnergy(a.pointer, b.pointer, a.length, _frame(frame), ctypes.byref(out)))
+    return out.value
+
+
 # Surfaces from curves.
 
 
@@ -899,6 +1039,84 @@ def c_canal(
         _truths(projected[:rows]),
         bool(cancelled.value),
     )
+
+
+def curve_points(
+    points: Any, count: int, spacing: Union[Spacing, str] = Spacing.ARC_LENGTH, is_closed: bool = False
+) -> tuple[Any, Any]:
+    """``count`` points of the spline through ``points``, and its unit tangents there."""
+    block, number = _arrays.points(points), _arrays.integer(count, "count")
+    out, tangents = _doubles(3 * number), _doubles(3 * number)
+    closed, kind = int(_arrays.truth(is_closed, "is_closed")), _arrays.member(Spacing, spacing, "spacing")
+    check(lib.shapeop_canalCurvePoints(*block, closed, kind, out, tangents, number))
+    return _arrays.shaped(out, number, 3), _arrays.shaped(tangents, number, 3)
+
+
+def normals(points: Any, angle: float = 0.0, first: Optional[Any] = None, is_closed: bool = False) -> tuple[Any, Any]:
+    """Normals along a curve through points that turn as little as possible; and frames mirrored from point to point."""
+    block = _arrays.points(points)
+    out, frames = _doubles(3 * block.length), _doubles(9 * block.length)
+    closed, vector = int(_arrays.truth(is_closed, "is_closed")), _optional(first, "first")
+    arguments = (block.pointer, None, block.length, closed, _arrays.real(angle, "angle"), vector)
+    check(lib.shapeop_canalNormals(*arguments, out, frames))
+    return _arrays.shaped(out, block.length, 3), _arrays.shaped(frames, block.length, 3, 3)
+
+
+def touching_spheres(points: Any, normals: Any, curve: Any, curve_closed: bool = False) -> tuple[Any, list[int]]:
+    """The spheres, (n, 4), that touch a curve in points, along its normals, and the spline of ``curve``; and flags."""
+    a, b, c = _arrays.points(points), _arrays.points(normals, "normals"), _arrays.points(curve, "curve")
+    if a.length != b.length:
+        raise ArgumentError(f"normals: expected {a.length}, found {b.length}")
+    spheres, flags = _doubles(4 * a.length), _ints(a.length)
+    closed = int(_arrays.truth(curve_closed, "curve_closed"))
+    outputs = (spheres, None, None, flags, None)
+    check(lib.shapeop_canalTouchingSpheres(a.pointer, b.pointer, a.length, *c, closed, *outputs))
+    return _arrays.shaped(spheres, a.length, 4), list(flags)
+
+
+def characteristic_circles(spheres: Any) -> Any:
+    """The circles in which each sphere ``[x, y, z, radius]`` meets the next."""
+    rows = [[float(number) for number in sphere] for sphere in spheres]
+    if any(len(row) != 4 for row in rows):
+        raise ArgumentError(f"spheres: expected 4 numbers for each, found {_arrays.found(spheres)}")
+    block = _arrays.numbers([number for row in rows for number in row], "spheres")
+    out = _doubles(7 * (len(rows) - 1))
+    check(lib.shapeop_canalCharacteristicCircles(block.pointer, len(rows), out))
+    return _arrays.shaped(out, max(len(rows) - 1, 0), 7)
+
+
+def mesh_circles(circles: Any, guide: Any, row: Any, wraps: bool = False) -> Any:
+    """The grid of which row i is on circle i and row 0 is ``row``; ``guide`` has a point of each circle."""
+    block, a, b = _circles(circles, "circles"), _arrays.points(guide, "guide"), _arrays.points(row, "row")
+    if a.length != block.length:
+        raise ArgumentError(f"guide: expected {block.length} points, found {a.length}")
+    out, closed = _doubles(3 * block.length * b.length), int(_arrays.truth(wraps, "wraps"))
+    check(lib.shapeop_canalMeshCircles(block.pointer, a.pointer, block.length, *b, closed, out))
+    return _arrays.shaped(out, block.length, b.length, 3)
+
+
+def center(
+    corners: Any, kind: Union[Center, str] = Center.MIDDLE, value: float = 0.0, point: Optional[Any] = None
+) -> tuple[Optional[Any], float, float]:
+    """A center of inversion for four points of a circle (``None``: at infinity), its angle, and its ratio."""
+    block = _arrays.points(corners, "corners")
+    if block.length != 4:
+        raise ArgumentError(f"corners: expected 4 points, found {block.length}")
+    out, infinite, omega, ratio = _doubles(3), ctypes.c_int(), ctypes.c_double(), ctypes.c_double()
+    choice = (_arrays.member(Center, kind, "kind"), _arrays.real(value, "value"), _optional(point, "point"))
+    outputs = (out, ctypes.byref(infinite), ctypes.byref(omega), ctypes.byref(ratio))
+    check(lib.shapeop_canalCenter(block.pointer, *choice, *outputs))
+    return (None if infinite.value else _arrays.doubles(out)), omega.value, ratio.value
+
+
+def ratio_limits(corners: Any) -> tuple[float, float]:
+    """The ends of the open interval of ratios of parallel sides that four points of a circle allow."""
+    block = _arrays.points(corners, "corners")
+    if block.length != 4:
+        raise ArgumentError(f"corners: expected 4 points, found {block.length}")
+    limits = _doubles(2)
+    check(lib.shapeop_canalCenters(block.pointer, None, None, None, limits))
+    return limits[0], limits[1]
 
 
 def family_names() -> tuple[str, ...]:
