@@ -132,10 +132,29 @@ static void mistakes(void) {
     check(shapeop_abiVersion() == SHAPEOP_ABI_VERSION, "abiVersion");
 }
 
+static void surfaces(void) {
+    const double profile[] = {2.5, 0, 0.5, 2, 0, 0.7, 1.5, 0, 0.5};
+    const double origin[] = {0, 0, 0}, z[] = {0, 0, 1}, center[] = {0, 0, 3};
+    double points[3 * 27];
+    int count = 0;
+    ShapeOpCanal *torus = shapeop_canalRevolution(profile, 3, origin, z, 1.5, 9);
+    check(torus != NULL, "canalRevolution");
+    check(shapeop_canalInvert(torus, center, 4) == SO_SUCCESS, "canalInvert");
+    check(shapeop_canalPoints(torus, NULL, 0, &count) == SO_SUCCESS && count == 27, "the number of points");
+    check(shapeop_canalPoints(torus, points, count, &count) == SO_SUCCESS, "canalPoints");
+    check(fabs(points[1]) < 1e-12, "the first column is in its plane");
+    check(strcmp(shapeop_canalFamily(torus), "M-revolution") == 0, "canalFamily");
+    check(shapeop_canalInvert(torus, center, 0) == SO_INVALID_VALUE, "no ratio of 0");
+    check(strstr(shapeop_lastError(NULL), "ratio") != NULL, "the message names the ratio");
+    shapeop_canalDelete(torus);
+    check(shapeop_canalUndo(torus) == -1, "a deleted surface is refused");
+}
+
 int main(void) {
     printf("shapeop %s\n", shapeop_version());
     list_types();
     planarise();
     mistakes();
+    surfaces();
     return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

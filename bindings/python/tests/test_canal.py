@@ -142,7 +142,7 @@ def test_two_parallel_lines_on_a_cylinder() -> None:
     found = canal.fit(guide, curve, circle_count=5, column_count=8, has_normal=1, normal_y=-1, normal_z=-1)
     assert found.surface.shape == (5, 8)
     assert found.surface.wraps == (False, True)
-    # Spheres pass through both ends of an edge 1.25 long, and touch the line at its middle: the centers are nearer by h^2/4.
+    # Spheres pass through both ends of an edge 1.25 long and touch the line over its middle.
     radius = (4 - 0.625**2) / (2 * 2**0.5)
     assert all(abs(float(circle[6]) - radius) < 1e-9 for circle in found.circles)
     assert all(abs(float(sphere[3]) - (radius**2 + 0.625**2) ** 0.5) < 1e-9 for sphere in found.spheres)
@@ -184,5 +184,5 @@ def test_the_example_runs(repository: Path, tmp_path: Path) -> None:
     parts = tmp_path / "parts.json"
     done = subprocess.run([sys.executable, str(script), str(parts)], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    assert "132 panels" in done.stdout
-    assert len(json.loads(parts.read_text(encoding="utf-8"))["panels"]) == 132
+    assert "264 panels" in done.stdout
+    assert len(json.loads(parts.read_text(encoding="utf-8"))["panels"]) == 264
