@@ -360,19 +360,19 @@ typedef enum shapeop_canal_kind {
     /**
      * A canal surface: its sections are circles.
      */
-    SO_CANAL_CANAL = 0,
+    SO_CANAL_KIND_CANAL = 0,
     /**
      * A surface of revolution.
      */
-    SO_CANAL_REVOLUTION = 1,
+    SO_CANAL_KIND_REVOLUTION = 1,
     /**
      * A moulding surface.
      */
-    SO_CANAL_MOULDING = 2,
+    SO_CANAL_KIND_MOULDING = 2,
     /**
      * Any circular net.
      */
-    SO_CANAL_CIRCULAR = 3,
+    SO_CANAL_KIND_CIRCULAR = 3,
 } shapeop_canal_kind;
 
 /**

@@ -177,6 +177,8 @@ def test_mistakes_are_told() -> None:
     with pytest.raises(shapeop.ClosedError):
         surface.undo()
     assert canal.family_names()[0] == "canal"
+    steps = [canal.Step.COMBESCURE, canal.Step.MOEBIUS]
+    assert canal.family_steps("MC-canal") == (canal.Kind.CANAL, steps)
 
 
 def test_the_example_runs(repository: Path, tmp_path: Path) -> None:

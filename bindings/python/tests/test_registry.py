@@ -47,6 +47,12 @@ def test_every_type_can_be_added_by_what_the_registry_says_of_it() -> None:
         (shapeop.LinearSolver, "SO_LINEAR_SOLVER_"),
         (shapeop.Projection, "SO_PROJECTION_"),
         (shapeop.Fairness, "SO_FAIRNESS_"),
+        (shapeop.canal.Kind, "SO_CANAL_KIND_"),
+        (shapeop.canal.Center, "SO_CANAL_CENTER_"),
+        (shapeop.canal.Section, "SO_CANAL_SECTION_"),
+        (shapeop.canal.Spacing, "SO_CANAL_SPACING_"),
+        (shapeop.canal.Step, "SO_CANAL_STEP_"),
+        (shapeop.canal.Stop, "SO_CANAL_STOP_"),
     ],
 )
 def test_no_member_of_an_enum_is_missing(kind: type[IntEnum], prefix: str) -> None:
@@ -55,7 +61,8 @@ def test_no_member_of_an_enum_is_missing(kind: type[IntEnum], prefix: str) -> No
 
 
 def test_no_error_code_is_missing() -> None:
-    enums = ("SO_OUTCOME_", "SO_ACCELERATION_", "SO_LINEAR_SOLVER_", "SO_PROJECTION_", "SO_FAIRNESS_", "SO_SUCCESS")
+    solvers = ("SO_OUTCOME_", "SO_ACCELERATION_", "SO_LINEAR_SOLVER_", "SO_PROJECTION_", "SO_FAIRNESS_", "SO_SUCCESS")
+    enums = (*solvers, "SO_CANAL_")
     names = [name for name in vars(_abi) if name.startswith("SO_") and not name.startswith(enums)]
     assert {code.name for code in shapeop.ErrorCode} == {name[len("SO_") :] for name in names}
     for code in shapeop.ErrorCode:

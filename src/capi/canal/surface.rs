@@ -36,20 +36,20 @@ pub const SHAPEOP_WRAPS_COLUMNS: c_int = 2;
 #[repr(C)]
 pub enum shapeop_canal_kind {
     /// A canal surface: its sections are circles.
-    SO_CANAL_CANAL = 0,
+    SO_CANAL_KIND_CANAL = 0,
     /// A surface of revolution.
-    SO_CANAL_REVOLUTION = 1,
+    SO_CANAL_KIND_REVOLUTION = 1,
     /// A moulding surface.
-    SO_CANAL_MOULDING = 2,
+    SO_CANAL_KIND_MOULDING = 2,
     /// Any circular net.
-    SO_CANAL_CIRCULAR = 3,
+    SO_CANAL_KIND_CIRCULAR = 3,
 }
 
 const KINDS: [(shapeop_canal_kind, BaseKind); 4] = [
-    (shapeop_canal_kind::SO_CANAL_CANAL, BaseKind::Canal),
-    (shapeop_canal_kind::SO_CANAL_REVOLUTION, BaseKind::Revolution),
-    (shapeop_canal_kind::SO_CANAL_MOULDING, BaseKind::Moulding),
-    (shapeop_canal_kind::SO_CANAL_CIRCULAR, BaseKind::Circular),
+    (shapeop_canal_kind::SO_CANAL_KIND_CANAL, BaseKind::Canal),
+    (shapeop_canal_kind::SO_CANAL_KIND_REVOLUTION, BaseKind::Revolution),
+    (shapeop_canal_kind::SO_CANAL_KIND_MOULDING, BaseKind::Moulding),
+    (shapeop_canal_kind::SO_CANAL_KIND_CIRCULAR, BaseKind::Circular),
 ];
 
 fn kind(number: c_int) -> Result<BaseKind> {

@@ -30,10 +30,10 @@ ProgressFunction = Callable[[float], object]
 class Kind(IntEnum):
     """What the base of a surface is."""
 
-    CANAL = _abi.SO_CANAL_CANAL
-    REVOLUTION = _abi.SO_CANAL_REVOLUTION
-    MOULDING = _abi.SO_CANAL_MOULDING
-    CIRCULAR = _abi.SO_CANAL_CIRCULAR
+    CANAL = _abi.SO_CANAL_KIND_CANAL
+    REVOLUTION = _abi.SO_CANAL_KIND_REVOLUTION
+    MOULDING = _abi.SO_CANAL_KIND_MOULDING
+    CIRCULAR = _abi.SO_CANAL_KIND_CIRCULAR
 
 
 class Center(IntEnum):
@@ -62,6 +62,14 @@ class Spacing(IntEnum):
     ARC_LENGTH = _abi.SO_CANAL_SPACING_ARC_LENGTH
     PARAMETER = _abi.SO_CANAL_SPACING_PARAMETER
     POINTS = _abi.SO_CANAL_SPACING_POINTS
+
+
+class Step(IntEnum):
+    """What a transformation keeps."""
+
+    SIMILARITY = _abi.SO_CANAL_STEP_SIMILARITY
+    MOEBIUS = _abi.SO_CANAL_STEP_MOEBIUS
+    COMBESCURE = _abi.SO_CANAL_STEP_COMBESCURE
 
 
 class Stop(IntEnum):
@@ -1122,6 +1130,14 @@ def ratio_limits(corners: Any) -> tuple[float, float]:
 def family_names() -> tuple[str, ...]:
     """The names of the families of super-canal surfaces."""
     return tuple(text(lib.shapeop_canalFamilyName(i)) for i in range(lib.shapeop_canalFamilyCount()))
+
+
+def family_steps(name: str) -> tuple[Kind, list[Step]]:
+    """How surfaces of a family are made: the kind of the base, and the kinds of the transformations after it."""
+    kind, count, steps = ctypes.c_int(), ctypes.c_int(), _ints(8)
+    family = _arrays.name_bytes(name, "name")
+    check(lib.shapeop_canalFamilySteps(family, ctypes.byref(kind), steps, 8, ctypes.byref(count)))
+    return Kind(kind.value), [Step(step) for step in steps[: count.value]]
 
 
 # Parts.
