@@ -84,7 +84,9 @@ impl CircleStrip {
         let mut frames = reflected_frames(guide, orientation)?;
         let points = guide.points();
         let (last, extent) = (points.len() - 1, extent(points, curve));
-        let line = |k: usize| outgoing(points[k], points[k + 1] - points[k], frames[k].t2).map_err(|e| e.at(format!("edges[{k}]")));
+        let line = |k: usize| {
+            outgoing(points[k], points[k + 1] - points[k], frames[k].t2).map_err(|e| e.at(format!("edges[{k}]")))
+        };
         let lines = (0..last).map(line).collect::<Result<Vec<_>>>()?;
         let spheres = touch_all(&lines, curve, extent, "edges")?;
         let touching = &spheres.touching;
@@ -98,7 +100,8 @@ impl CircleStrip {
         };
         // The line of an edge seen from its end is that of the reversed edge, in the same direction.
         let into = outgoing(points[0], -before, -frames[0].t2).map_err(|error| error.at("points[0]"))?;
-        let out = outgoing(points[last], after, frames[last].t2).map_err(|error| error.at(format!("points[{last}]")))?;
+        let out =
+            outgoing(points[last], after, frames[last].t2).map_err(|error| error.at(format!("points[{last}]")))?;
         let backwards: Vec<Touching> = touching.iter().take(3).copied().collect();
         let forwards: Vec<Touching> = touching.iter().rev().take(3).copied().collect();
         let (first, final_) = (outer(&into, &backwards, curve, extent), outer(&out, &forwards, curve, extent));
@@ -112,18 +115,18 @@ impl CircleStrip {
         around.extend(spheres.spheres());
         around.push(final_.sphere);
         let circles = (0..points.len())
-            .map(|k| circle(points[k], &frames[k], [around[k], around[k + 1]], extent).map_err(|e| e.at(format!("points[{k}]"))))
+            .map(|k| {
+                circle(points[k], &frames[k], [around[k], around[k + 1]], extent)
+                    .map_err(|e| e.at(format!("points[{k}]")))
+            })
             .collect::<Result<Vec<_>>>()?;
-        let feet: Vec<f64> = [first.foot, touching[0].foot.parameter]
-            .into_iter()
-            .chain(touching[1..].iter().map(|touching| touching.foot.parameter))
-            .chain([final_.foot])
-            .collect();
+        let mut feet = vec![first.foot];
+        feet.extend(touching.iter().map(|touching| touching.foot.parameter));
+        feet.push(final_.foot);
         let crossings = (0..points.len()).map(|k| crossing(curve, &circles[k], [feet[k], feet[k + 1]])).collect();
         let gap = |(frame, &tangent): (&Frame, &DVec3)| frame.t1.distance(tangent);
         let tangent_gap = frames.iter().zip(guide.tangents()).map(gap).fold(0.0, f64::max);
-        let closing_gap =
-            guide.is_closed().then(|| frames[last].across(closing, Direction::One).distance(&frames[0]));
+        let closing_gap = guide.is_closed().then(|| frames[last].across(closing, Direction::One).distance(&frames[0]));
         Ok(Self {
             circles,
             frames,
@@ -207,7 +210,13 @@ fn crossing(curve: &NearestOnCurve<'_>, circle: &Circle, [from, to]: [f64; 2]) -
     let curve = curve.curve();
     let [start, end] = curve.range();
     // Around a closed curve the short way; an open one has no more than itself.
-    let around = |t: f64| if curve.is_closed() && (t - from).abs() > 0.5 * (end - start) { t - (end - start).copysign(t - from) } else { t };
+    let around = |t: f64| {
+        if curve.is_closed() && (t - from).abs() > 0.5 * (end - start) {
+            t - (end - start).copysign(t - from)
+        } else {
+            t
+        }
+    };
     let within = |t: f64| if curve.is_closed() { t } else { t.clamp(start, end) };
     let (mut low, mut high) = (within(from), within(around(to)));
     let height = |t: f64| (curve.point(t) - circle.center).dot(circle.normal);
@@ -222,7 +231,11 @@ fn crossing(curve: &NearestOnCurve<'_>, circle: &Circle, [from, to]: [f64; 2]) -
     for _ in 0..100 {
         let jet = curve.at(t);
         let height = (jet.point - circle.center).dot(circle.normal);
-        if height < 0.0 { low = t } else { high = t }
+        if height < 0.0 {
+            low = t;
+        } else {
+            high = t;
+        }
         let newton = t - height / jet.first.dot(circle.normal);
         let next = if (newton - low) * (newton - high) < 0.0 { newton } else { 0.5 * (low + high) };
         if (next - t).abs() <= 2.0 * f64::EPSILON * start.abs().max(end.abs()) {
@@ -363,7 +376,8 @@ pub(super) mod tests {
         // A closed guide that is not on a sphere does not come back to its frame.
         let ring = |u: f64| DVec3::new(3.0 * u.cos(), 3.0 * u.sin(), 0.7 * (2.0 * u).sin() + 0.3 * (3.0 * u).cos());
         let ring = |height: f64, scale: f64| {
-            let points: Vec<DVec3> = (0..24).map(|i| scale * ring(TAU * f64::from(i) / 24.0) + height * DVec3::Z).collect();
+            let points: Vec<DVec3> =
+                (0..24).map(|i| scale * ring(TAU * f64::from(i) / 24.0) + height * DVec3::Z).collect();
             Spline::through(&points, true).unwrap()
         };
         let (first, second) = (ring(0.0, 1.0), ring(2.0, 0.8));

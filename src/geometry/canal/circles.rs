@@ -1,14 +1,14 @@
 //! Meshes on strips of circles of which consecutive ones are on one sphere.
 //!
-//! A plane through one edge between two such circles meets each in a second point, and the four points are on a circle: that in
-//! which the plane meets the sphere. So a mesh is known from its points on the first circle and one column (section 4.1, Figs.
-//! 12 and 13): point `(i + 1, j + 1)` is where the plane through `(i, j)`, `(i, j + 1)` and `(i + 1, j)` meets circle `i + 1` again. (The
-//! paper prints the new point with the index of the known one.)
+//! A plane through one edge between two such circles meets each in a second point, and the four points are on a circle: that
+//! in which the plane meets the sphere. So a mesh is known from its points on the first circle and one column (section 4.1,
+//! Figs. 12 and 13): point `(i + 1, j + 1)` is where the plane through `(i, j)`, `(i, j + 1)` and `(i + 1, j)` meets circle `i + 1`
+//! again. (The paper prints the new point with the index of the known one.)
 //!
 //! Not every column will do. If the tangents of the circles in its points are mirror images of each other, all lines from points
 //! of a circle to their partners on the next one meet in one point (there are two such points for each pair of circles on a
 //! sphere); then any two columns make circular quads. Else columns that follow each other zigzag about such ones, and an odd
-//! number of them does not close around the circles. [`column`] finds columns with mirrored tangents; a guide of
+//! number of them does not close around the circles. [`column()`] finds columns with mirrored tangents; a guide of
 //! [`CircleStrip`](super::circle_strip::CircleStrip) is one.
 
 use std::f64::consts::{PI, TAU};
@@ -154,8 +154,8 @@ fn above(circle: &Circle, start: DVec3, point: DVec3, normal: DVec3) -> Result<(
     }
 }
 
-/// The grid of which row `i` is on circle `i`, with row 0 given; it closes around the circles if `wraps`. The guide, a point of each
-/// circle, is column 0 where it goes through the first point; else it only leads from circle to circle.
+/// The grid of which row `i` is on circle `i`, with row 0 given; it closes around the circles if `wraps`. The guide, a point of
+/// each circle, is column 0 where it goes through the first point; else it only leads from circle to circle.
 ///
 /// # Errors
 /// Fewer than 2 circles or 2 points of row 0 (3 if it wraps), another number of guide points, or a number that is not finite.
@@ -199,9 +199,8 @@ pub fn mesh(circles: &[Circle], guide: &[DVec3], row: &[DVec3], wraps: bool) -> 
             }
         }
     }
-    let grid = Grid::new(points, circles.len(), columns, [false, wraps]).map_err(|error| {
-        if error.place() == "columns" { error.with_place("row") } else { error }
-    })?;
+    let grid = Grid::new(points, circles.len(), columns, [false, wraps])
+        .map_err(|error| if error.place() == "columns" { error.with_place("row") } else { error })?;
     check_quads(&grid)?;
     Ok(grid)
 }
@@ -381,7 +380,8 @@ pub(super) mod tests {
             gaps[0] = gaps[0].max((b - a).dot(normal).abs() / mean_edge);
             let (u, v) = (b - a, c - a);
             let w = u.cross(v);
-            let center = a + (w.cross(u) * v.length_squared() + v.cross(w) * u.length_squared()) / (2.0 * w.length_squared());
+            let center =
+                a + (w.cross(u) * v.length_squared() + v.cross(w) * u.length_squared()) / (2.0 * w.length_squared());
             let radius = center.distance(a);
             gaps[1] = gaps[1].max((d.distance(center) - radius).abs() / radius);
         }
@@ -514,7 +514,8 @@ pub(super) mod tests {
     #[test]
     fn strips_that_make_no_circular_mesh_are_refused_at_their_face() {
         let (circles, guide) = circles(8);
-        let row = Section::Angles { from_rad: 0.0, to_rad: 1.5 }.samples(&circles[0], guide[0], 6, None).unwrap().points;
+        let row =
+            Section::Angles { from_rad: 0.0, to_rad: 1.5 }.samples(&circles[0], guide[0], 6, None).unwrap().points;
         let refusal = |circles: &[Circle], guide: &[DVec3], row: &[DVec3], wraps| {
             let error = mesh(circles, guide, row, wraps).unwrap_err();
             (error.status(), error.place().to_string())
@@ -531,8 +532,11 @@ pub(super) mod tests {
         // A guide whose tangents are not mirror images makes circular quads from column to column; they close for an even number
         // of columns only.
         let mut random = Random(3);
-        let drifted: Vec<DVec3> =
-            circles.iter().zip(&guide).map(|(circle, &point)| circle.point_at(point, random.between(-0.1, 0.1))).collect();
+        let drifted: Vec<DVec3> = circles
+            .iter()
+            .zip(&guide)
+            .map(|(circle, &point)| circle.point_at(point, random.between(-0.1, 0.1)))
+            .collect();
         let whole = |count| Section::Whole.samples(&circles[0], drifted[0], count, None).unwrap().points;
         for wraps in [false, true] {
             let grid = mesh(&circles, &drifted, &whole(12), wraps).unwrap();
@@ -555,7 +559,10 @@ pub(super) mod tests {
         assert_eq!(refusal(&circles, &guide, &moved(&row, 2, 0.1 * DVec3::Z), false).1, "row[2]");
         let nan = refusal(&circles, &moved(&guide, 3, DVec3::NAN), &row, false);
         assert_eq!(nan, (Status::InvalidValue, "guide[3]".into()));
-        assert_eq!(refusal(&circles, &guide, &moved(&row, 2, DVec3::NAN), false), (Status::InvalidValue, "row[2]".into()));
+        assert_eq!(
+            refusal(&circles, &guide, &moved(&row, 2, DVec3::NAN), false),
+            (Status::InvalidValue, "row[2]".into())
+        );
         let mut bad = circles.clone();
         bad[2].radius = f64::NAN;
         assert_eq!(refusal(&bad, &guide, &row, false), (Status::InvalidValue, "circles[2]".into()));

@@ -172,6 +172,15 @@ pub fn close(grid: &Grid, lengths: &Lengths) -> Result<Lengths> {
     })
 }
 
+/// The corner of a parallel quad opposite to the known one, from its neighbours `b` and `d` along the source's edges `u` and `w`
+/// to that corner; `None` where these are parallel. The same as within [`combescure`], for one quad.
+pub(super) fn fourth_corner(b: DVec3, d: DVec3, u: DVec3, w: DVec3) -> Option<DVec3> {
+    let m = u.cross(w);
+    let squared = m.length_squared();
+    let is_singular = !(squared > SINGULAR * SINGULAR * u.length_squared() * w.length_squared());
+    (!is_singular).then(|| b + ((d - b).cross(w).dot(m) / squared) * u)
+}
+
 /// A grid with closed directions cut open: the first line again at the end.
 struct Open<'a> {
     grid: &'a Grid,

@@ -63,13 +63,9 @@ pub fn fit_guide(guide: &Guide, curve: &NearestOnCurve<'_>, options: &FitOptions
     let grid = mesh(&strip.circles, guide.points(), &samples.points, samples.is_whole)?;
     // Along the circle to where the row starts, then in the sense of the row.
     let frame = strip.frames[0];
-    let frame = if samples.points[0] == start {
-        frame
-    } else {
-        frame.across(samples.points[0] - start, Direction::Two)
-    };
     let frame =
-        if samples.is_reversed { Frame { t2: -frame.t2, normal: -frame.normal, ..frame } } else { frame };
+        if samples.points[0] == start { frame } else { frame.across(samples.points[0] - start, Direction::Two) };
+    let frame = if samples.is_reversed { Frame { t2: -frame.t2, normal: -frame.normal, ..frame } } else { frame };
     Ok(Fit { grid, frame, is_outward: !samples.is_reversed, deviation: strip.deviation(), strip })
 }
 
@@ -108,7 +104,10 @@ mod tests {
             let fit = fit(&first, &second, &options(64, 17, section)).unwrap();
             let [planarity, circularity] = gaps(&fit.grid);
             assert!(planarity < 1e-12 && circularity < 1e-12, "{section:?}: {planarity:e} {circularity:e}");
-            assert_eq!((fit.grid.rows(), fit.grid.columns(), fit.grid.wraps()), (64, 17, [false, section == Section::Whole]));
+            assert_eq!(
+                (fit.grid.rows(), fit.grid.columns(), fit.grid.wraps()),
+                (64, 17, [false, section == Section::Whole])
+            );
             assert!(fit.strip.spheres.residual < 1e-24 && fit.deviation < 2e-3);
             if matches!(section, Section::Whole | Section::ToCurve { .. }) {
                 let guide = NearestOnCurve::new(&first).unwrap();
@@ -189,7 +188,9 @@ mod tests {
                 Ok(fit) => {
                     fitted += 1;
                     assert!(fit.deviation.is_finite() && fit.strip.spheres.residual.is_finite());
-                    assert!(fit.strip.circles.iter().all(|circle| circle.radius.is_finite() && circle.center.is_finite()));
+                    assert!(
+                        fit.strip.circles.iter().all(|circle| circle.radius.is_finite() && circle.center.is_finite())
+                    );
                     // All spheres that nothing is told of touch: so says the functional of those alone.
                     let Findings { pierced, .. } = &fit.strip.spheres.findings;
                     assert!(!pierced.is_empty() || fit.strip.spheres.residual < 1e-16, "{case}");
@@ -205,7 +206,8 @@ mod tests {
         let guide = Guide::along(&first, 20, Spacing::ArcLength).unwrap();
         let curve = NearestOnCurve::new(&second).unwrap();
         let inward = Orientation::Normal(-DVec3::new(0.5_f64.cos(), 0.0, 0.5_f64.sin()));
-        let options = FitOptions { orientation: inward, ..options(0, 5, Section::Angles { from_rad: 0.0, to_rad: 1.0 }) };
+        let options =
+            FitOptions { orientation: inward, ..options(0, 5, Section::Angles { from_rad: 0.0, to_rad: 1.0 }) };
         let fit = fit_guide(&guide, &curve, &options).unwrap();
         assert_eq!(fit.grid.rows(), 20);
         // Second curve from u = 0.8 to 1.7, edges about u = 2.5 (k + ½)/19.

@@ -3,6 +3,7 @@
 
 mod base;
 pub mod bases;
+pub mod c_canal;
 pub mod chain;
 pub mod circle_strip;
 pub mod circles;
@@ -10,6 +11,7 @@ pub mod closing;
 pub mod combescure;
 #[cfg(test)]
 mod cyclide;
+pub mod families;
 pub mod file;
 pub mod fit;
 pub mod folds;
@@ -25,6 +27,7 @@ pub mod panels;
 pub mod parallel;
 pub mod patch;
 mod polyline;
+pub mod properties;
 mod quad;
 pub mod quality;
 pub mod revolution_centers;

@@ -120,8 +120,8 @@ impl CenterLine {
             let (distance, along) = (w.length(), self.direction.dot(w));
             if distance - self.half_chord <= MEETING * extent {
                 let reason = if self.half_chord > 0.0 {
-                    let chord = 2.0 * self.half_chord;
-                    format!("the second curve is {distance} from the middle of an edge of length {chord}: it must be beyond its ends")
+                    let least = self.half_chord;
+                    format!("the second curve is {distance} from the middle of the edge: expected more than {least}")
                 } else {
                     format!("the second curve meets the first here: it comes as near as {distance:e}")
                 };
@@ -138,7 +138,8 @@ impl CenterLine {
                 return Ok(Touching { sphere: self.sphere(offset), offset, foot, step_count: step });
             }
         }
-        let reason = format!("no sphere touches both curves: its center still moved by {change:e} in step {MOST_STEPS}");
+        let reason =
+            format!("no sphere touches both curves: its center still moved by {change:e} in step {MOST_STEPS}");
         Err(Error::new(Status::NoSolution, reason))
     }
 }
@@ -205,14 +206,12 @@ fn jumps(touching: &[Touching], curve: &NearestOnCurve<'_>) -> Vec<usize> {
 /// No point, another number of normals, or a coordinate that is not finite. Status `Degenerate`: a normal is zero, the curves
 /// meet, or a sphere is a plane; `NoSolution`: a center does not settle. The place is `points`, `points[k]`, `normals` or
 /// `normals[k]`.
-pub fn spheres_at_points(
-    points: &[DVec3],
-    normals: &[DVec3],
-    curve: &NearestOnCurve<'_>,
-) -> Result<TouchingSpheres> {
+pub fn spheres_at_points(points: &[DVec3], normals: &[DVec3], curve: &NearestOnCurve<'_>) -> Result<TouchingSpheres> {
     check_finite("points", points)?;
     check_finite("normals", normals)?;
-    for (name, expected, found) in [("points", points.len().max(1), points.len()), ("normals", points.len(), normals.len())] {
+    for (name, expected, found) in
+        [("points", points.len().max(1), points.len()), ("normals", points.len(), normals.len())]
+    {
         if expected != found {
             let reason = format!("expected {expected}, found {found}");
             return Err(Error::new(Status::InvalidArgumentLength, reason).at(name));

@@ -75,9 +75,9 @@ impl<'a> ArcLength<'a> {
                 break;
             }
             if excess > 0.0 {
-                high = t
+                high = t;
             } else {
-                low = t
+                low = t;
             }
             let newton = t - excess / self.curve.at(t).first.length();
             t = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
