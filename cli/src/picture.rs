@@ -58,6 +58,8 @@ pub struct Panel<'a> {
 pub struct Overlay {
     /// Polylines, drawn thick over everything, each in a colour of its own.
     pub curves: Vec<Vec<DVec3>>,
+    /// Polylines drawn thin over the mesh, all in one colour.
+    pub thin_curves: Vec<Vec<DVec3>>,
     /// Faces in a colour that warns.
     pub marked: Vec<usize>,
 }
@@ -107,8 +109,8 @@ struct Room {
 impl Picture<'_> {
     pub fn to_svg(&self) -> String {
         let targets = |panel: &Panel<'_>| panel.handles.iter().map(|[_, target]| *target).collect::<Vec<_>>();
-        let points =
-            |panel: &Panel<'_>| [panel.mesh.points.clone(), targets(panel), panel.overlay.curves.concat()].concat();
+        let curves = |panel: &Panel<'_>| [panel.overlay.curves.concat(), panel.overlay.thin_curves.concat()].concat();
+        let points = |panel: &Panel<'_>| [panel.mesh.points.clone(), targets(panel), curves(panel)].concat();
         let all_points: Vec<DVec3> = self.panels.iter().flat_map(points).collect();
         // The last: a cloth shows itself when it hangs, not while it lies.
         let normals: Vec<DVec3> = self.panels.last().into_iter().flat_map(|panel| normals_of(panel.mesh)).collect();
@@ -171,10 +173,13 @@ impl Picture<'_> {
             _ if !panel.edges.is_empty() => self.draw_edges(group, panel, camera, &place),
             _ => draw_points(group, panel, &place),
         };
-        for (curve, colour) in panel.overlay.curves.iter().zip(CURVES.iter().cycle()) {
+        let Overlay { curves, thin_curves, .. } = &panel.overlay;
+        let thin = thin_curves.iter().map(|curve| (curve, HANDLE, 1.4));
+        let thick = curves.iter().zip(CURVES.iter().cycle()).map(|(curve, colour)| (curve, *colour, 3.2));
+        for (curve, colour, width) in thin.chain(thick) {
             let points = coordinates(curve.iter().map(|&point| place(point)));
             let line = Polyline::new().set("points", points).set("fill", "none").set("stroke-linejoin", "round");
-            group = group.add(line.set("stroke", *colour).set("stroke-width", 3.2).set("stroke-linecap", "round"));
+            group = group.add(line.set("stroke", colour).set("stroke-width", width).set("stroke-linecap", "round"));
         }
         for [at, target] in panel.handles.iter().map(|pair| pair.map(place)) {
             group = group.add(handle(at, target));

@@ -47,14 +47,14 @@ The profile starts in the rail's first point. Column 0 is the rail, row 0 the pr
     /// A Monge surface: a planar profile swept along any rail without twist
     #[command(after_help = "\
 Examples:
-  shapeop canal monge examples/canal/helix.csv examples/canal/section.csv
+  shapeop canal monge examples/canal/helix.csv examples/canal/arch_on_helix.csv
 
 As moulding, for rails in space. Beyond the evolute of the rail quads cross themselves: the report counts them.")]
     Monge(SweepArgs),
     /// An inverted surface of revolution over a planar curve from P1 to P4 and two points P2, P3 on a circle with its ends
     #[command(after_help = "\
 Examples:
-  shapeop canal m-revolution examples/canal/bean.csv --p2 -0.7071067811865475,-0.7071067811865476 --p3 0.5,-0.8660254037844386
+  shapeop canal m-revolution examples/canal/bean.obj --p2 -0.7071067811865475,-0.7071067811865476 --p3 0.5,-0.8660254037844386
 
 A roof whose arches are arcs of circles, each in a plane orthogonal to the curve's. What --omega, --ratio and --center choose is the \
 base, which further transformations start from; the surface itself is always the same.")]
@@ -62,8 +62,8 @@ base, which further transformations start from; the surface itself is always the
     /// An inverted moulding or Monge surface through a planar curve and a rail that leaves its plane
     #[command(after_help = "\
 Examples:
-  shapeop canal m-moulding examples/canal/bean.csv examples/canal/arch.csv --center 0,-4
-  shapeop canal m-moulding examples/canal/bean.csv examples/canal/arch.csv --p3 0.5,-0.8660254037844386
+  shapeop canal m-moulding examples/canal/bean.obj examples/canal/arch.csv --center 0,-4
+  shapeop canal m-moulding examples/canal/bean.obj examples/canal/arch.csv --p3 0.5,-0.8660254037844386
 
 Rail and curve start in the same point. With --p3, on a circle with the curve's ends and the rail's end, the far corner comes near it.")]
     MMoulding(MMouldingArgs),
@@ -71,7 +71,7 @@ Rail and curve start in the same point. With --p3, on a circle with the curve's 
     #[command(after_help = "\
 Examples:
   shapeop canal strip examples/canal/arc.csv --start 3.5,0 --lengths 1.5
-  shapeop canal strip examples/canal/arc.csv --start 3.5,0 --border-length 3 --rise 60
+  shapeop canal strip examples/canal/arc.csv --start 3.5,0 --border-length 6 --rise 60
   shapeop canal strip examples/canal/arc.csv --start 3.5,0 --lengths 1.5 --smooth
 
 One of --lengths, --radii and --border-length is needed. Lengths can miss what is attainable: the refusal says which are; --project \
@@ -98,12 +98,22 @@ the circles beside the closing one are not on one sphere. Where frames do not cl
     /// The canal surface along one curve that touches another
     #[command(after_help = "\
 Examples:
-  shapeop canal fit examples/canal/edge_a.csv examples/canal/edge_b.csv --phi 150
-  shapeop canal fit examples/canal/edge_a.csv examples/canal/edge_b.csv --phi 150 --section whole --columns 24
+  shapeop canal fit examples/canal/edge_a.csv examples/canal/edge_b.csv --phi 30
+  shapeop canal fit examples/canal/edge_a.csv examples/canal/edge_b.csv --phi 30 --section whole --columns 24
 
 The first curve becomes a line of curvature, the second is touched by the spheres. --phi is the one free number: the angle of the \
 surface's normal about the first curve, from the direction nearest to z.")]
     Fit(FitArgs),
+    /// A C-canal surface: a planar cross-section swept along a guide, as wide as lengths or a second curve say
+    #[command(after_help = "\
+Examples:
+  shapeop canal sections examples/canal/path.csv examples/canal/cross.csv --lengths 2
+  shapeop canal sections examples/canal/path.csv examples/canal/cross.csv --curve examples/canal/side.csv
+
+The section is convex, planar, and starts in the guide's first point; all sections of the result are planar. Lengths are the distances \
+of the far ends of sections from the guide. A length that is not attainable is refused with the interval that is; --project takes the \
+nearest.")]
+    Sections(SectionsArgs),
     /// Apply inversions, Combescure transformations and similarities to a surface or a circular mesh
     #[command(after_help = "\
 Examples:
@@ -124,6 +134,7 @@ Examples:
     #[command(after_help = "\
 Examples:
   shapeop canal check out/arc.strip.surface.json
+  shapeop canal check out/arc.strip.surface.json --properties
   shapeop canal check net.obj --json")]
     Check(CanalCheckArgs),
     /// What a workshop cuts: flat panels as SVG sheets in true scale, mitre angles, beams, the offset mesh
@@ -373,6 +384,25 @@ pub struct FitArgs {
 }
 
 #[derive(Debug, Args)]
+pub struct SectionsArgs {
+    /// The guide, a curve file
+    pub guide: PathBuf,
+    /// The cross-section, a planar curve file that starts in the guide's first point
+    pub section: PathBuf,
+    /// Distances across: one for all, two for the first and the last, or one for each point; or a file of them
+    #[arg(long, value_name = "L,...|FILE", value_parser = parse_numbers, allow_hyphen_values = true, required_unless_present = "curve")]
+    pub lengths: Option<Numbers>,
+    /// The second curve, which the far ends are to meet, a curve file
+    #[arg(long, value_name = "FILE", conflicts_with = "lengths")]
+    pub curve: Option<PathBuf>,
+    /// Replace lengths that are not attainable by the nearest that are
+    #[arg(long)]
+    pub project: bool,
+    #[command(flatten)]
+    pub output: CanalOutputArgs,
+}
+
+#[derive(Debug, Args)]
 pub struct TransformArgs {
     /// The surface (.json) or a circular mesh (.obj, .off, .ply)
     pub input: PathBuf,
@@ -480,6 +510,9 @@ pub struct CanalCheckArgs {
     /// How many of the worst faces to name
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub worst: usize,
+    /// Tell properties of a surface too: planar curves, isothermic, stress lines (some seconds for large nets)
+    #[arg(long)]
+    pub properties: bool,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

@@ -1,9 +1,13 @@
 //! `canal check`: how planar and circular a surface or a mesh is, where it folds, and its worst faces.
 
+use std::path::PathBuf;
+
 use anyhow::{Result, anyhow};
 use serde::Serialize;
 use serde_json::json;
+use shapeop::geometry::canal::properties::{PLANAR, Properties, StressLines};
 use shapeop::geometry::canal::quality::Quality;
+use shapeop::geometry::canal::surface::SuperCanal;
 use shapeop::mesh::Grid;
 
 use super::made::{Measures, has_evolute, in_json};
@@ -25,6 +29,61 @@ struct Component {
     faces: usize,
     measures: Measures,
     worst_faces: Vec<Face>,
+    /// Null unless asked for, and for meshes.
+    properties: Option<PropertiesInReport>,
+}
+
+/// Table 2 of the paper for one surface: what is measured, and what is known from how it was made.
+#[derive(Serialize)]
+struct PropertiesInReport {
+    /// The largest distance of a row's point from the row's plane over its extent; the same of a column's.
+    rows_off_plane: f64,
+    columns_off_plane: f64,
+    isothermic_by_construction: bool,
+    /// 0 on an isothermic net: how far logarithms of cross-ratios are from sums of a number of the row and of the column.
+    cross_ratio_residual: f64,
+    /// Whether lines of curvature can be lines of principal stress under pressure; null where that could not be measured.
+    stress_lines: Option<bool>,
+    /// The residuals of the membrane on the net refined twice.
+    membrane_residuals: Option<[f64; 2]>,
+    /// Why stress lines could not be measured.
+    reason: Option<String>,
+}
+
+impl PropertiesInReport {
+    fn of(surface: &SuperCanal) -> Self {
+        let found = Properties::of(surface);
+        let stress = found.stress_lines.as_ref();
+        Self {
+            rows_off_plane: found.off_plane[0],
+            columns_off_plane: found.off_plane[1],
+            isothermic_by_construction: found.is_isothermic_by_construction,
+            cross_ratio_residual: found.cross_ratio_residual,
+            stress_lines: stress.ok().map(StressLines::holds),
+            membrane_residuals: stress.ok().map(|stress| stress.residuals),
+            reason: stress.err().map(ToString::to_string),
+        }
+    }
+
+    fn in_words(&self) -> String {
+        let planar =
+            |off: f64| if off <= PLANAR { "planar".to_owned() } else { format!("{} off their planes", number(off)) };
+        let isothermic = if self.isothermic_by_construction { "yes, by construction" } else { "not by construction" };
+        let stress = match (self.stress_lines, self.membrane_residuals, &self.reason) {
+            (Some(holds), Some([coarse, fine]), _) => {
+                let answer = if holds { "yes" } else { "no" };
+                format!("{answer}: the residual goes from {} to {}", number(coarse), number(fine))
+            }
+            (.., reason) => format!("not measured: {}", reason.as_deref().unwrap_or_default()),
+        };
+        format!(
+            "  rows                 {}\n  columns              {}\n  isothermic           {isothermic}; cross-ratios {} off\n  \
+             stress lines         {stress}",
+            planar(self.rows_off_plane),
+            planar(self.columns_off_plane),
+            number(self.cross_ratio_residual)
+        )
+    }
 }
 
 #[derive(Serialize)]
@@ -58,6 +117,7 @@ impl Component {
             faces: quality.planarity.len(),
             measures: Measures::of(grid, is_limited),
             worst_faces: order.iter().take(worst).map(face).collect(),
+            properties: None,
         }
     }
 
@@ -82,6 +142,9 @@ impl Component {
         if warnings.is_empty() {
             parts.push("  no folds".to_owned());
         }
+        if let Some(properties) = &self.properties {
+            parts.push(properties.in_words());
+        }
         if !self.worst_faces.is_empty() {
             let mut rows =
                 vec![["worst faces, from 0", "row", "column", "planarity", "concyclicity"].map(str::to_owned).to_vec()];
@@ -103,8 +166,11 @@ impl Component {
 pub fn run(args: &CanalCheckArgs, is_quiet: bool) -> Result<Ending> {
     let name = args.input.display().to_string();
     let components: Vec<Component> = if extension(&args.input) == "json" {
-        let of = |(_, surface): &(std::path::PathBuf, shapeop::geometry::canal::surface::SuperCanal)| {
-            Component::of(Some(surface.family()), surface.net().grid(), has_evolute(surface), args.worst)
+        let of = |(_, surface): &(PathBuf, SuperCanal)| {
+            let measured =
+                Component::of(Some(surface.family()), surface.net().grid(), has_evolute(surface), args.worst);
+            let properties = args.properties.then(|| PropertiesInReport::of(surface));
+            Component { properties, ..measured }
         };
         Components::read(&args.input)?.surfaces.iter().map(of).collect()
     } else {

@@ -2,13 +2,14 @@
 
 use anyhow::{Result, anyhow};
 use shapeop::geometry::canal::circles::Section;
-use shapeop::geometry::canal::fit::{FitOptions, fit};
+use shapeop::geometry::canal::fit::{FitOptions, fit_guide};
 use shapeop::geometry::canal::net::Net;
 use shapeop::geometry::canal::normals::Orientation;
 use shapeop::geometry::canal::surface::{BaseKind, SuperCanal};
-use shapeop::mesh::curve::{Spacing, Spline};
+use shapeop::mesh::curve::{Curve as _, NearestOnCurve, Spacing, Spline, resample};
 
 use super::made::{Made, named, write};
+use super::strips::guide_of;
 use crate::Ending;
 use crate::args::canal::{FitArgs, SectionKind};
 use crate::curve_file::Curve;
@@ -23,17 +24,26 @@ pub fn run(args: &FitArgs, is_quiet: bool) -> Result<Ending> {
         SectionKind::LongWay => Section::ToCurve { is_long_way: true },
         SectionKind::Whole => Section::Whole,
     };
+    let guide_spline = spline(&guide)?;
+    let points = match args.circles {
+        None => guide.distinct().to_vec(),
+        Some(count) => {
+            let parameters = resample(&guide_spline, count, Spacing::ArcLength)?;
+            parameters.into_iter().map(|parameter| guide_spline.point(parameter)).collect()
+        }
+    };
     let options = FitOptions {
-        circle_count: args.circles.unwrap_or(guide.distinct().len()),
-        // The points of the file are the spline's knots only by its parameter; evenly spread ones say no less.
+        circle_count: points.len(),
         spacing: Spacing::ArcLength,
         column_count: args.columns,
         orientation: Orientation::Angle(args.phi.to_radians()),
         section,
     };
-    let found = fit(&spline(&guide)?, &spline(&curve)?, &options)?;
+    let second = spline(&curve)?;
+    let found = fit_guide(&guide_of(&points, guide.is_closed)?, &NearestOnCurve::new(&second)?, &options)?;
     let surface = SuperCanal::new(Net::new(found.grid, found.frame)?, BaseKind::Canal);
-    let mut made = Made::new(surface).curve("guide", &guide, true).curve("second curve", &curve, false);
+    let mut made =
+        Made::new(surface).curve("guide", &guide, args.circles.is_none()).curve("second curve", &curve, false);
     made.find("phi_deg", args.phi);
     made.find("deviation_from_second_curve", found.deviation);
     let strip = &found.strip;
@@ -55,7 +65,7 @@ pub fn run(args: &FitArgs, is_quiet: bool) -> Result<Ending> {
         (&findings.pierced, "spheres are pierced by the second curve elsewhere"),
     ] {
         if !list.is_empty() {
-            made.warn(format!("{} {what}: {}", list.len(), named(list)));
+            made.warn(format!("{what}: {}", named(list)));
         }
     }
     if strip.is_extrapolated.contains(&true) {

@@ -35,7 +35,7 @@ pub struct Made {
     /// What it was made from, and whether the mesh is meant to meet it.
     pub curves: Vec<(&'static str, Curve, bool)>,
     /// Curves that the picture shows and the report does not list.
-    drawn: Vec<Curve>,
+    drawn: Vec<Vec<DVec3>>,
     /// What the command found, by name, for the report and the summary.
     pub found: Map<String, Value>,
     pub warnings: Vec<String>,
@@ -64,7 +64,7 @@ impl Made {
         self
     }
 
-    pub fn drawn(mut self, curve: Curve) -> Self {
+    pub fn drawn(mut self, curve: Vec<DVec3>) -> Self {
         self.drawn.push(curve);
         self
     }
@@ -157,7 +157,7 @@ impl Measures {
             (&self.rows_near_evolute, "rows come near the evolute of the guide, where panels shrink and fold"),
         ] {
             if !list.is_empty() {
-                warnings.push(format!("{} {what}: {}", list.len(), named(list)));
+                warnings.push(format!("{what}: {}", named(list)));
             }
         }
         warnings
@@ -172,7 +172,8 @@ impl Measures {
 /// The first of a list of places.
 pub fn named(list: &[usize]) -> String {
     let names: Vec<String> = list.iter().take(MOST_NAMED).map(usize::to_string).collect();
-    format!("{}{}", names.join(", "), if list.len() > MOST_NAMED { ", ..." } else { "" })
+    let rest = if list.len() > MOST_NAMED { format!(", ... ({} in all)", list.len()) } else { String::new() };
+    format!("{}{rest}", names.join(", "))
 }
 
 /// How each face is cut.
@@ -202,9 +203,10 @@ pub fn write(command: &str, input: &Path, made: Made, args: &CanalOutputArgs, is
     output.text("surface", ".surface.json", &surface.to_json())?;
     let family = surface.family();
     if output.wants_pictures() {
-        let shown = curves.iter().map(|(_, curve, _)| curve).chain(&drawn).map(|curve| curve.points.clone()).collect();
+        let curves_shown = curves.iter().map(|(_, curve, _)| curve.points.clone()).collect();
+        let overlay = Overlay { curves: curves_shown, thin_curves: drawn, marked: measures.marked() };
         let title = format!("{}: {command}", file_name(input));
-        output.picture("picture", &picture(title, &family, &mesh, shown, &measures))?;
+        output.picture("picture", &picture(title, &family, &mesh, overlay, &measures))?;
     }
     let in_report = |(what, curve, is_met): &(&'static str, Curve, bool)| CurveInReport {
         what,
@@ -265,13 +267,12 @@ fn distance(mesh: &Mesh, points: &[DVec3]) -> Option<f64> {
     Some(points.iter().map(|&point| closest.nearest(point).distance(point)).fold(0.0, f64::max))
 }
 
-fn picture(title: String, family: &str, mesh: &Mesh, curves: Vec<Vec<DVec3>>, measures: &Measures) -> String {
-    let marked = measures.marked();
+fn picture(title: String, family: &str, mesh: &Mesh, overlay: Overlay, measures: &Measures) -> String {
     let is_bad = measures.concyclicity.max > NOT_CIRCULAR;
-    let caption = if marked.is_empty() {
+    let caption = if overlay.marked.is_empty() {
         String::new()
     } else {
-        format!("{} faces in orange fold, cross themselves or have shrunk", marked.len())
+        format!("{} faces in orange fold, cross themselves or have shrunk", overlay.marked.len())
     };
     let panel = Panel {
         mesh,
@@ -282,7 +283,7 @@ fn picture(title: String, family: &str, mesh: &Mesh, curves: Vec<Vec<DVec3>>, me
         pointed_at: is_bad.then_some(measures.concyclicity.face),
         caption,
         handles: Vec::new(),
-        overlay: Overlay { curves, marked },
+        overlay,
     };
     let subtitle = format!(
         "planarity at worst {}, concyclicity at worst {}",
@@ -320,7 +321,8 @@ fn in_words(report: &Report, output: &Output) -> String {
     }
     for (name, value) in &report.found {
         let shown = match value {
-            Value::Number(found) => found.as_f64().map_or_else(|| found.to_string(), number),
+            Value::Number(found) if found.is_f64() => found.as_f64().map_or_else(String::new, number),
+            Value::Number(count) => count.to_string(),
             Value::String(text) => text.clone(),
             Value::Bool(is_so) => (if *is_so { "yes" } else { "no" }).to_owned(),
             _ => continue,

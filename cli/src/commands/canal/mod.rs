@@ -5,6 +5,7 @@ mod check;
 mod fit;
 mod made;
 mod panels;
+mod sections;
 mod sheets;
 mod strips;
 mod transform;
@@ -25,6 +26,7 @@ pub fn run(command: &CanalCommand, is_quiet: bool) -> Result<Ending> {
         CanalCommand::Circles(args) => strips::circles(args, is_quiet),
         CanalCommand::Facade(args) => strips::facade(args, is_quiet),
         CanalCommand::Fit(args) => fit::run(args, is_quiet),
+        CanalCommand::Sections(args) => sections::run(args, is_quiet),
         CanalCommand::Transform(args) => transform::run(args, is_quiet),
         CanalCommand::Refine(args) => transform::refine(args, is_quiet),
         CanalCommand::Check(args) => check::run(args, is_quiet),

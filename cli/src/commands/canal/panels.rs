@@ -93,7 +93,7 @@ fn component(args: &PanelsArgs, name: &std::path::Path, family: &str, net: &Net,
                 number(gap)
             ),
             handles: Vec::new(),
-            overlay: Overlay { curves: axes_drawn(grid, &axes, height), ..Overlay::default() },
+            overlay: Overlay { thin_curves: axes_drawn(grid, &axes, height), ..Overlay::default() },
         };
         let picture = Picture {
             title,

@@ -13,6 +13,7 @@ use shapeop::geometry::canal::smoothing::{self, Input};
 use shapeop::geometry::canal::strip::{self, Options, Strip};
 use shapeop::geometry::canal::strip_of_circles::from_circles;
 use shapeop::geometry::canal::surface::{BaseKind, SuperCanal};
+use shapeop::geometry::circle::Circle;
 use shapeop::linalg::bfgs::Stop;
 use shapeop::mesh::Grid;
 use shapeop::mesh::curve::{Curve as _, Spacing, Spline, resample};
@@ -106,9 +107,8 @@ pub fn circles(args: &CirclesArgs, is_quiet: bool) -> Result<Ending> {
     }
     for circle in &circles {
         let start = circle.center + circle.radius * circle.normal.any_orthonormal_vector();
-        let points = (0..=48).map(|k| circle.point_at(start, TAU * f64::from(k) / 48.0)).collect();
-        let drawn = Curve { name: name.to_string(), points, is_closed: true, repeats_end: false };
-        made = made.drawn(drawn);
+        let points: Vec<DVec3> = (0..=48).map(|k| circle.point_at(start, TAU * f64::from(k) / 48.0)).collect();
+        made = made.drawn(points);
     }
     write("circles", &args.circles, made, &args.output, is_quiet)?;
     Ok(Ending::Done)
@@ -155,7 +155,7 @@ pub fn facade(args: &FacadeArgs, is_quiet: bool) -> Result<Ending> {
         ));
     }
     if !closed.flipped.is_empty() {
-        made.warn(format!("{} quads of the strip cross themselves: {}", closed.flipped.len(), named(&closed.flipped)));
+        made.warn(format!("quads of the strip cross themselves: {}", named(&closed.flipped)));
     }
     write("facade", &args.guide, made, &args.output, is_quiet)?;
     Ok(Ending::Done)
@@ -163,16 +163,8 @@ pub fn facade(args: &FacadeArgs, is_quiet: bool) -> Result<Ending> {
 
 /// The strip along `points` of which the numbers in `measure` are given.
 fn measured(points: &[DVec3], start: DVec3, measure: &MeasureArgs, options: &Options) -> Result<Strip> {
-    let numbers = |numbers: &Numbers| match numbers {
-        Numbers::List(list) => Ok(list.clone()),
-        Numbers::File(path) => read_numbers(path),
-    };
     if let Some(lengths) = &measure.lengths {
-        let lengths = match numbers(lengths)?[..] {
-            [length] => vec![length; points.len()],
-            [first, last] if points.len() != 2 => strip::lengths_between(points, first, last)?,
-            ref list => list.to_vec(),
-        };
+        let lengths = lengths_of(lengths, points)?;
         return Ok(strip::of_lengths(points, start, &lengths, options)?);
     }
     if let Some(radii) = &measure.radii {
@@ -186,6 +178,22 @@ fn measured(points: &[DVec3], start: DVec3, measure: &MeasureArgs, options: &Opt
     Ok(strip::of_border_edges(points, start, &strip::edges_of_border(points, length)?)?)
 }
 
+/// Lengths for each of some points: one for all, two for the first and the last, or all.
+pub fn lengths_of(lengths: &Numbers, points: &[DVec3]) -> Result<Vec<f64>> {
+    Ok(match numbers(lengths)?[..] {
+        [length] => vec![length; points.len()],
+        [first, last] if points.len() != 2 => strip::lengths_between(points, first, last)?,
+        ref list => list.to_vec(),
+    })
+}
+
+fn numbers(numbers: &Numbers) -> Result<Vec<f64>> {
+    match numbers {
+        Numbers::List(list) => Ok(list.clone()),
+        Numbers::File(path) => read_numbers(path),
+    }
+}
+
 /// The surface of a strip.
 fn of_strip(strip: &Strip, frame: Frame) -> Result<Made> {
     let mut made = Made::new(SuperCanal::new(Net::new(strip.grid()?, frame)?, BaseKind::Canal));
@@ -195,14 +203,13 @@ fn of_strip(strip: &Strip, frame: Frame) -> Result<Made> {
     made.find("attainable", &strip.attainable);
     if !strip.projected.is_empty() {
         made.warn(format!(
-            "{} lengths are not attainable and were replaced, by up to {:.3e}: {}",
-            strip.projected.len(),
+            "lengths are not attainable and were replaced, by up to {:.3e}: {}",
             strip.deviation,
             named(&strip.projected)
         ));
     }
     if !strip.flipped.is_empty() {
-        made.warn(format!("{} quads of the strip cross themselves: {}", strip.flipped.len(), named(&strip.flipped)));
+        made.warn(format!("quads of the strip cross themselves: {}", named(&strip.flipped)));
     }
     Ok(made)
 }
@@ -226,9 +233,25 @@ fn frame_of(strip: &Strip, points: &[DVec3], is_closed: bool, arcs: &ArcArgs) ->
 
 /// The tangent at the first of some points from which lines of curvature go smoothly along them.
 pub fn tangent(points: &[DVec3], is_closed: bool) -> Result<DVec3> {
-    let spline = Spline::through(points, is_closed)?;
-    let tangents: Vec<DVec3> = spline.knots()[..points.len()].iter().map(|&knot| spline.tangent(knot)).collect();
-    Ok(fitting_tangent(&Guide::new(points, &tangents, is_closed)?)?)
+    Ok(fitting_tangent(&guide_of(points, is_closed)?)?)
+}
+
+/// Points, each once, with the tangents of the circles through each and its neighbours: those of arcs, which lines of curvature
+/// of cyclidic nets consist of.
+pub fn guide_of(points: &[DVec3], is_closed: bool) -> Result<Guide> {
+    let last = points.len().saturating_sub(1);
+    let tangent = |k: usize| {
+        let middle = if is_closed { k } else { k.clamp(1, last.saturating_sub(1).max(1)) };
+        let around = |at: usize| points.get(at % (last + 1)).copied().unwrap_or_default();
+        let [before, here, after] = [around(middle + last), around(middle), around(middle + 1)];
+        match Circle::through(before, here, after) {
+            Some(circle) if points.len() > 2 => circle.tangent_at(points[k]),
+            _ if k == last && !is_closed => points[k] - around(k + last),
+            _ => around(k + 1) - points[k],
+        }
+    };
+    let tangents: Vec<DVec3> = (0..points.len()).map(tangent).collect();
+    Ok(Guide::new(points, &tangents, is_closed)?)
 }
 
 fn in_guide(error: shapeop::error::Error, guide: &Curve) -> anyhow::Error {
