@@ -4,6 +4,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
+use shapeop::geometry::canal::circles::Section;
+use shapeop::geometry::canal::fit::{FitOptions, fit};
+use shapeop::geometry::canal::normals::Orientation;
+use shapeop::mesh::curve::{Spacing, Spline};
 use shapeop::mesh::measure::{self, Spread};
 use shapeop::mesh::{Mesh, Topology, file};
 use shapeop::problem::Problem;
@@ -376,4 +380,55 @@ fn hexagons_become_planar_when_little_holds_them() {
 #[test]
 fn a_large_mesh_becomes_planar_when_little_holds_it() {
     assert_planar("costa_mesh_free2");
+}
+
+/// The mesh of a canal surface fitted to two curves.
+fn canal_mesh() -> Mesh {
+    let spline = |at: fn(f64) -> DVec3| {
+        Spline::through(&(0..=12).map(|k| at(f64::from(k) / 12.0)).collect::<Vec<_>>(), false).unwrap()
+    };
+    let guide = spline(|s| DVec3::new(8.0 * s, 2.0 * (3.0 * s).sin(), 0.0));
+    let other = spline(|s| DVec3::new(8.0 * s, 2.0 * (3.0 * s).sin() + 2.5 + 0.5 * s, 0.8 + 0.4 * (5.0 * s).cos()));
+    let options = FitOptions {
+        circle_count: 17,
+        spacing: Spacing::ArcLength,
+        column_count: 9,
+        orientation: Orientation::Angle(0.9),
+        section: Section::ToCurve { is_long_way: false },
+    };
+    fit(&guide, &other, &options).unwrap().grid.mesh()
+}
+
+#[test]
+fn a_canal_net_is_a_fixed_point_of_the_engine() {
+    let mesh = canal_mesh();
+    let diagonal = mesh.diagonal();
+    assert!(spread(&mesh, measure::circularity).max < 1e-12);
+    let options = RecipeOptions { fairness: 0.5, ..RecipeOptions::default() };
+    for recipe in [recipes::circularize, recipes::circumscribe] {
+        let problem = recipe(&mesh, &options).unwrap();
+        assert_eq!(count(&problem, "Circle"), mesh.faces.len());
+        let (solved, _) = solved(&problem, &settings_of(&problem));
+        let moved = measure::displacements(&mesh.points, &solved.points).unwrap();
+        assert!(Spread::of(&moved).max < 1e-9 * diagonal, "{}", Spread::of(&moved).max / diagonal);
+    }
+}
+
+#[test]
+fn a_canal_net_is_explored_with_its_circles_kept() {
+    let mesh = canal_mesh();
+    let corner = |i: usize| (i * 9) as u32;
+    let anchors = Anchors { points: vec![corner(0), corner(16), corner(16) + 8, corner(8)], ..Anchors::default() };
+    let options = RecipeOptions { anchors, ..RecipeOptions::default() };
+    let mut problem = recipes::circumscribe(&mesh, &options).unwrap();
+    assert_eq!(problem.handles.len(), 4);
+    let lifted = problem.handles.iter_mut().find(|handle| handle.point == corner(8)).unwrap();
+    lifted.target[2] += 0.2;
+    let (solved, report) = solved(&problem, &settings_of(&problem));
+    assert_eq!(report.outcome, Outcome::Converged);
+    let edge = measure::mean_edge(&mesh.corners(&mesh.faces[0]));
+    assert!(spread(&solved, measure::circularity).max < 1e-8 * edge.max(1.0));
+    assert!(solved.points[corner(8) as usize].z > mesh.points[corner(8) as usize].z + 0.1);
+    let closeness = RecipeOptions { closeness: 0.0, ..RecipeOptions::default() };
+    assert_eq!(recipes::circumscribe(&mesh, &closeness).unwrap_err().place(), "closeness");
 }

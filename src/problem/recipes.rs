@@ -71,12 +71,12 @@ pub struct RecipeOptions {
     pub weight: f64,
     /// The weight that draws each point to where it was; 0.05 by default, 0 for none.
     pub closeness: f64,
-    /// The weight of fairness; 0 by default, for none (for [`rationalize`]: for ten times the closeness).
+    /// The weight of fairness; 0 by default, for none (for [`rationalize`] and [`circumscribe`]: for ten times the closeness).
     pub fairness: f64,
     /// What fairness asks for.
     pub fairness_kind: Fairness,
     /// The points that keep their place, by a `Closeness` 10⁴ times as heavy as the heaviest of the weights above; as handles in
-    /// [`rationalize`].
+    /// [`rationalize`] and [`circumscribe`].
     pub anchors: Anchors,
 }
 
@@ -96,13 +96,14 @@ impl Default for RecipeOptions {
 pub type Recipe = fn(&Mesh, Option<f64>, &RecipeOptions) -> Result<Problem>;
 
 /// Every recipe with its name, for programs that let people choose.
-pub const RECIPES: [(&str, Recipe); 6] = [
+pub const RECIPES: [(&str, Recipe); 7] = [
     ("planarize", |mesh, _, options| planarize(mesh, options)),
     ("circularize", |mesh, _, options| circularize(mesh, options)),
     ("smooth", |mesh, _, options| smooth(mesh, options)),
     ("regularize", |mesh, _, options| regularize(mesh, options)),
     ("equalize", equalize),
     ("rationalize", rationalize),
+    ("circumscribe", |mesh, _, options| circumscribe(mesh, options)),
 ];
 
 /// The recipes that take a length.
@@ -197,36 +198,40 @@ fn check_length(length: f64) -> Result<f64> {
 /// As [`planarize`]; the closeness or `length` is not finite and above 0.
 pub fn rationalize(mesh: &Mesh, length: Option<f64>, options: &RecipeOptions) -> Result<Problem> {
     let mut draft = Draft::new(mesh, options)?;
-    let closeness = options.closeness;
-    if closeness <= 0.0 {
-        let reason = format!("expected a number above 0, as it makes the result unique; found {closeness}");
-        return Err(Error::new(Status::InvalidValue, reason).at("closeness"));
-    }
+    check_closeness(options)?;
     let length = length.map(check_length).transpose()?;
     for face in mesh.faces.iter().filter(|face| face.len() > 3) {
         let (type_name, scalars) = match length {
             Some(length) if face.len() == 4 => ("DiagonalDistance", Some(vec![length])),
             _ => ("Plane", None),
         };
-        let (type_name, indices, weight) = (type_name.to_owned(), face.clone(), options.weight);
-        draft.problem.constraints.push(Signature { type_name, indices, weight, scalars, hard: true });
+        draft.add_hard(type_name, face.clone(), options.weight, scalars);
     }
-    let fairness = if options.fairness > 0.0 { options.fairness } else { FAIR * closeness };
-    let is_kept = options.fairness_kind == Fairness::KeepDetail;
-    if !is_kept {
-        draft.add_laplacians("Laplacian", fairness);
+    draft.finish_exact()
+}
+
+/// Gives every face a circumscribed circle to the last digits, for going on with a circular net: a hard `Circle` per face, none
+/// for triangles. Of all such meshes that is found which is nearest to the design and whose moves are fair; a circular net stays what it
+/// is until a handle moves. Anchors are handles, as in [`rationalize`].
+///
+/// # Errors
+/// As [`planarize`]; `closeness` is 0.
+pub fn circumscribe(mesh: &Mesh, options: &RecipeOptions) -> Result<Problem> {
+    let mut draft = Draft::new(mesh, options)?;
+    check_closeness(options)?;
+    for face in mesh.faces.iter().filter(|face| face.len() > 3) {
+        draft.add_hard("Circle", face.clone(), options.weight, None);
     }
-    let anchors = (0..).zip(draft.anchors()?).filter(|(_, is_anchor)| *is_anchor);
-    let target = |point: u32| mesh.points[point as usize].to_array();
-    draft.problem.handles = anchors.map(|(point, _)| Handle { point, target: target(point) }).collect();
-    draft.problem.objective = Some(Objective {
-        handle_weight: HANDLE_FACTOR * closeness.max(fairness),
-        closeness_weight: closeness,
-        fairness_weight: if is_kept { fairness } else { 0.0 },
-        tolerance: EXACT,
-        ..Objective::default()
-    });
-    Ok(draft.problem)
+    draft.finish_exact()
+}
+
+/// Refuses a closeness that leaves the nearest of all exact meshes open.
+fn check_closeness(options: &RecipeOptions) -> Result<()> {
+    if options.closeness > 0.0 {
+        return Ok(());
+    }
+    let reason = format!("expected a number above 0, as it makes the result unique; found {}", options.closeness);
+    Err(Error::new(Status::InvalidValue, reason).at("closeness"))
 }
 
 /// The boundary points where the boundary turns by more than 75 degrees.
@@ -315,6 +320,11 @@ impl<'a> Draft<'a> {
         }
     }
 
+    fn add_hard(&mut self, type_name: &str, indices: Vec<u32>, weight: f64, scalars: Option<Vec<f64>>) {
+        let type_name = type_name.to_owned();
+        self.problem.constraints.push(Signature { type_name, indices, weight, scalars, hard: true });
+    }
+
     /// One Laplacian of the type per point, as [`Fairness`] states.
     fn add_laplacians(&mut self, type_name: &str, weight: f64) {
         for (point, stencil) in (0..).zip(boundary_stencils(self.mesh, &self.topology)) {
@@ -347,6 +357,27 @@ impl<'a> Draft<'a> {
             let weight = if is_anchor { anchor_weight } else { options.closeness };
             self.add("Closeness", vec![point], weight, None);
         }
+        Ok(self.problem)
+    }
+
+    /// Adds fairness, closeness and anchors as an objective and handles beside hard constraints.
+    fn finish_exact(mut self) -> Result<Problem> {
+        let closeness = self.options.closeness;
+        let fairness = if self.options.fairness > 0.0 { self.options.fairness } else { FAIR * closeness };
+        let is_kept = self.options.fairness_kind == Fairness::KeepDetail;
+        if !is_kept {
+            self.add_laplacians("Laplacian", fairness);
+        }
+        let anchors = (0..).zip(self.anchors()?).filter(|(_, is_anchor)| *is_anchor);
+        let target = |point: u32| self.mesh.points[point as usize].to_array();
+        self.problem.handles = anchors.map(|(point, _)| Handle { point, target: target(point) }).collect();
+        self.problem.objective = Some(Objective {
+            handle_weight: HANDLE_FACTOR * closeness.max(fairness),
+            closeness_weight: closeness,
+            fairness_weight: if is_kept { fairness } else { 0.0 },
+            tolerance: EXACT,
+            ..Objective::default()
+        });
         Ok(self.problem)
     }
 
