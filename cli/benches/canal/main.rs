@@ -2,9 +2,13 @@
 
 #[path = "../exploration/group.rs"]
 mod group;
+mod figures;
+mod scene;
 mod shapes;
 mod speed;
 mod truths;
+
+use std::path::Path;
 
 use anyhow::Result;
 
@@ -22,6 +26,7 @@ fn main() -> Result<()> {
     match words.as_slice() {
         ["speed"] => speed::groups()?.iter().for_each(|group| println!("{group}")),
         ["truths"] => truths::groups()?.iter().for_each(|group| println!("{group}")),
+        ["figures", folder, rest @ ..] => figures::draw(Path::new(folder), rest.first().copied())?,
         _ => println!("{USAGE}"),
     }
     Ok(())

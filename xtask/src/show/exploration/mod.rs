@@ -3,9 +3,7 @@
 mod figure12;
 mod plot;
 
-use std::process::Command;
-
-use anyhow::Result;
+use anyhow::{Context, Result};
 
 use super::Figures;
 use super::program::Program;
