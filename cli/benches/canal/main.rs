@@ -2,7 +2,9 @@
 
 #[path = "../exploration/group.rs"]
 mod group;
+mod families;
 mod figures;
+mod lengths;
 mod scene;
 mod shapes;
 mod speed;
@@ -27,6 +29,8 @@ fn main() -> Result<()> {
         ["speed"] => speed::groups()?.iter().for_each(|group| println!("{group}")),
         ["truths"] => truths::groups()?.iter().for_each(|group| println!("{group}")),
         ["figures", folder, rest @ ..] => figures::draw(Path::new(folder), rest.first().copied())?,
+        ["lengths"] => lengths::groups()?.iter().for_each(|group| println!("{group}")),
+        ["families", folder] => families::groups(Path::new(folder))?.iter().for_each(|group| println!("{group}")),
         _ => println!("{USAGE}"),
     }
     Ok(())

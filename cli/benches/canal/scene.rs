@@ -15,7 +15,7 @@ use svg::Document;
 use svg::node::element::{Polygon, Polyline, Rectangle, Text};
 
 pub const WHITE: Rgb = [0.93, 0.945, 0.96];
-pub const BLUE_FACE: Rgb = [0.62, 0.76, 0.91];
+pub const BLUE_FACE: Rgb = [0.70, 0.83, 0.97];
 pub const WOOD: Rgb = [0.93, 0.83, 0.67];
 pub const ORANGE: Rgb = [0.93, 0.46, 0.05];
 pub const RED: Rgb = [0.80, 0.08, 0.12];
@@ -147,14 +147,14 @@ impl Eye {
         (mean - self.middle).dot(self.toward) / self.radius
     }
 
-    /// From 0.5 to 1: lit from over the left shoulder, and a little from the right.
+    /// From 0.62 to 1: lit from over the left shoulder, and a little from the right.
     fn light(&self, corners: &[DVec3]) -> f64 {
         let normal: DVec3 =
             (0..corners.len()).map(|k| (corners[k] - corners[0]).cross(corners[(k + 1) % corners.len()] - corners[0])).sum();
         let Some(normal) = normal.try_normalize() else { return 1.0 };
         let normal = if normal.dot(self.toward) < 0.0 { -normal } else { normal };
         let lamp = (self.toward + 0.9 * self.up - 0.9 * self.right).normalize();
-        (0.56 + 0.46 * normal.dot(lamp).max(0.0) + 0.06 * normal.dot(self.right).max(0.0)).min(1.0)
+        (0.62 + 0.40 * normal.dot(lamp).max(0.0) + 0.05 * normal.dot(self.right).max(0.0)).min(1.0)
     }
 }
 

@@ -1,11 +1,13 @@
 //! Fits of two curves: Figs. 8 to 11, 24 and 25.
 
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use anyhow::Result;
 use glam::DVec3;
+use shapeop::geometry::canal::circle_strip::CircleStrip;
 use shapeop::geometry::canal::circles::Section;
-use shapeop::geometry::canal::fit::{Fit, FitOptions, fit, fit_guide};
+use shapeop::geometry::canal::fit::{Fit, FitOptions, fit_guide};
 use shapeop::geometry::canal::folds::Folds;
 use shapeop::geometry::canal::normals::{Guide, Orientation, rotation_minimising};
 use shapeop::geometry::canal::two_curves::spheres_at_points;
@@ -29,7 +31,26 @@ fn options(circles: usize, columns: usize, angle: f64, section: Section) -> FitO
     }
 }
 
-const TO_CURVE: Section = Section::ToCurve { is_long_way: false };
+/// Rows from the guide to a little beyond the second curve, wherever it passes.
+fn beyond(guide: &Guide, curve: &NearestOnCurve<'_>, angle: f64) -> Result<Section> {
+    let strip = CircleStrip::new(guide, Orientation::Angle(angle), curve)?;
+    let (mut last, mut to_rad) = (0.0_f64, 0.0_f64);
+    for ((circle, crossing), &point) in strip.circles.iter().zip(&strip.crossings).zip(guide.points()) {
+        let Some(crossing) = crossing else { continue };
+        let turn = circle.angle_between(point, crossing.point);
+        // Of the two ways round, the one that is nearer to that of the circle before; the short one at first.
+        let turn = if turn - last > PI { turn - TAU } else { turn };
+        last = turn;
+        to_rad = if turn.abs() > to_rad.abs() { turn } else { to_rad };
+    }
+    Ok(Section::Angles { from_rad: 0.0, to_rad: 1.03 * to_rad })
+}
+
+fn fit_beyond(first: &Spline, second: &Spline, circles: usize, angle: f64) -> Result<Fit> {
+    let guide = Guide::along(first, circles, Spacing::ArcLength)?;
+    let curve = NearestOnCurve::new(second)?;
+    Ok(fit_guide(&guide, &curve, &options(circles, 17, angle, beyond(&guide, &curve, angle)?))?)
+}
 
 /// How near a fit is to its two curves: points of column 0 off the first, spheres off the second.
 fn curves_met(group: &mut Group, fit: &Fit, first: &dyn Curve, second: &dyn Curve) -> Result<()> {
@@ -47,27 +68,29 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
     let guide = Guide::along(&first, 41, Spacing::ArcLength)?;
     let normals = rotation_minimising(&guide, Orientation::Angle(ANGLE))?;
     let touching = spheres_at_points(guide.points(), &normals, &curve)?;
-    let fit = fit_guide(&guide, &curve, &options(0, 15, ANGLE, TO_CURVE))?;
+    let section = beyond(&guide, &curve, ANGLE)?;
+    let fit = fit_guide(&guide, &curve, &options(0, 15, ANGLE, section))?;
     let mut group = Group::new("Figs. 8 to 11: a canal surface that fits two curves", "41 circles through points of the first curve; spheres touch the second; 15 points to each circle.");
     exact(&mut group, &[&fit.grid]);
     curves_met(&mut group, &fit, &first, &second)?;
     group.at_most("F of equation 6", fit.strip.spheres.residual, 1e-20);
     group.at_most("mesh off the second curve / diagonal", fit.deviation / fit.grid.diagonal(), 1e-3);
-    let coarse = fit_guide(&Guide::along(&first, 21, Spacing::ArcLength)?, &curve, &options(0, 15, ANGLE, TO_CURVE))?;
+    let coarse = fit_guide(&Guide::along(&first, 21, Spacing::ArcLength)?, &curve, &options(0, 15, ANGLE, section))?;
     group.at_least("that of half as many circles, times as far", coarse.deviation / fit.deviation, 3.0);
 
     let centers: Vec<DVec3> = touching.touching.iter().map(|it| it.sphere.center).collect();
     let longest = touching.touching.iter().map(|it| it.offset.abs()).fold(0.0, f64::max);
     let side = touching.touching[0].offset.signum();
     let ruled = |from: f64, to: f64, directions: &[DVec3]| -> Result<Grid> {
-        let point = |k: usize| guide.points()[k / 2] + (if k % 2 == 0 { from } else { to }) * directions[k / 2];
-        Ok(Grid::new((0..82).map(point).collect(), 41, 2, [false; 2])?)
+        // Short faces, so that what is before and behind them is drawn so.
+        let point = |k: usize| guide.points()[k / 9] + (from + (to - from) * (k % 9) as f64 / 8.0) * directions[k / 9];
+        Ok(Grid::new((0..41 * 9).map(point).collect(), 41, 9, [false; 2])?)
     };
     let developable = ruled(0.0, 1.25 * side * longest, &normals)?;
     let binormals: Vec<DVec3> = guide.tangents().iter().zip(&normals).map(|(t, n)| t.cross(*n)).collect();
     let tangential = ruled(-0.35 * longest, 0.35 * longest, &binormals)?;
     let curves = |view: View| view.line(&sampled(&first, 120), ORANGE, 3.6).line(&sampled(&second, 120), RED, 3.6);
-    let view = |title: &str| View::new(title, -28.0, 34.0);
+    let view = |title: &str| View::new(title, -28.0, 48.0);
     let eight = curves(view("8: the two curves and the surface of centres").grid(&developable, WHITE));
     let nine = view("9: normals along the first, one angle; in blue the tangent developable")
         .grid(&developable, WHITE)
@@ -100,8 +123,8 @@ fn planar_pair(kind: usize) -> Result<[Spline; 2]> {
             through(&|s| DVec3::new(5.2 * s - 0.1, 2.1 + 0.2 * (4.0 * s).cos(), 0.0))?,
         ],
         1 => [
-            through(&|s| DVec3::new(5.0 * s, -0.5 * (3.14 * s).sin(), 0.0))?,
-            through(&|s| DVec3::new(5.2 * s - 0.1, 1.8, 0.5 + 0.7 * (6.28 * s).sin().powi(2)))?,
+            through(&|s| DVec3::new(5.0 * s, -0.5 * (PI * s).sin(), 0.0))?,
+            through(&|s| DVec3::new(5.2 * s - 0.1, 1.8, 0.5 + 0.7 * (TAU * s).sin().powi(2)))?,
         ],
         _ => {
             let arc = |radius: f64, s: f64| radius * DVec3::new((2.2 * s).cos(), (2.2 * s).sin(), 0.0);
@@ -115,10 +138,10 @@ pub fn figure24(folder: &Path) -> Result<Group> {
     let mut views = Vec::new();
     let mut grids = Vec::new();
     for (kind, angle, title, azimuth) in
-        [(0, -0.55, "both on the ground", -20.0), (1, -0.75, "on the ground and in an upright plane", -20.0), (2, 0.6, "in parallel planes", 25.0)]
+        [(0, -0.55, "both on the ground", -20.0), (1, -0.75, "on the ground and in an upright plane", -20.0), (2, -0.5, "in parallel planes", 200.0)]
     {
         let [first, second] = planar_pair(kind)?;
-        let fit = fit(&first, &second, &options(49, 15, angle, TO_CURVE))?;
+        let fit = fit_beyond(&first, &second, 49, angle)?;
         curves_met(&mut group, &fit, &first, &second)?;
         let view = View::new(title, azimuth, 34.0).grid(&fit.grid, WHITE);
         let caption = format!("mesh off the red curve: {:.1e} of the diagonal", fit.deviation / fit.grid.diagonal());
@@ -142,7 +165,7 @@ pub fn figure25(folder: &Path) -> Result<Group> {
     // A parabola, and a curve that comes near the centre of curvature at its vertex, (0, 0.8).
     let first = through(&|s| DVec3::new(4.0 * s - 2.0, 0.625 * (4.0 * s - 2.0).powi(2), 0.0))?;
     let second = through(&|s| DVec3::new(1.3 * (2.0 * s - 1.0), 0.72 + 2.0 * (2.0 * s - 1.0).powi(2), 0.55))?;
-    let fit = fit(&first, &second, &options(61, 17, 0.5, TO_CURVE))?;
+    let fit = fit_beyond(&first, &second, 61, -0.5)?;
     let folds = Folds::of(&fit.grid);
     let mut group = Group::new("Fig. 25: lines of curvature concentrate near the evolute of the guide", "A parabola, and a second curve near the centre of curvature at its vertex; 61 circles.");
     exact(&mut group, &[&fit.grid]);

@@ -124,7 +124,7 @@ pub fn figure21(folder: &Path) -> Result<Group> {
 pub fn figure22(folder: &Path) -> Result<Group> {
     let (mut surface, _) = (c_canal_of(&ellipse(6, 0.62), |_| 1.0)?.0.surface, ());
     let grid = surface.net().grid();
-    let center = grid.at(12, 3) + 2.4 * grid.diagonal() * DVec3::new(0.3, -0.2, -0.5);
+    let center = grid.at(12, 3) + 2.4 * grid.diagonal() * DVec3::new(-0.3, 0.2, 0.5);
     surface.push(Transform::Inversion(Inversion::new(center, grid.diagonal().powi(2))?))?;
     let mut group = Group::new("Fig. 22: remeshing of a super-canal surface", &format!("A {} surface of 24 × 6 faces; refined at its base, sent through its chain.", surface.family()));
     let coarse = surface.net().grid();
@@ -142,12 +142,12 @@ pub fn figure22(folder: &Path) -> Result<Group> {
     let mut views = Vec::new();
     for (net, title) in nets.iter().zip(["24 × 6", "48 × 12", "96 × 24"]) {
         let grid = net.grid();
-        let view = View::new(title, 40.0, 36.0).grid(grid, WHITE).line(&grid.column(0), ORANGE, 3.0).line(grid.row(0), BLUE, 3.0);
-        views.push(view.dots(&coarse.column(0), ORANGE, 2.6));
+        let view = View::new(title, 40.0, 40.0).grid(grid, WHITE);
+        views.push(view.line(&grid.column(0), ORANGE, 3.0).line(grid.row(0), BLUE, 3.0));
     }
     let scene = Scene {
         title: "Fig. 22: remeshing at three densities".to_owned(),
-        subtitle: "An MC-canal surface; points of the coarse mesh (orange along the guide) stay where they are".to_owned(),
+        subtitle: "An MC-canal surface; all points of the coarse mesh stay where they are; orange: the guide, blue: the section".to_owned(),
         columns: 3,
         views,
     };
@@ -166,17 +166,17 @@ pub fn figure23(folder: &Path) -> Result<Group> {
             match k {
                 0 => curve[0],
                 24 => p2,
-                _ => middle + (cosine + 0.3 * sine * sine) * half + 0.75 * sine * DVec3::Z + 0.5 * sine * sine * side,
+                _ => middle + cosine * half + 1.25 * half.length() * sine * DVec3::Z + 0.35 * sine * sine * side,
             }
         })
         .collect();
-    let found = m_moulding(&curve, &rail, MouldingCenter::Corner { p3, center: Center::Middle })?;
+    let found = m_moulding(&curve, &rail, MouldingCenter::Corner { p3, center: Center::Angle(0.4) })?;
     let (grid, base) = (found.image.grid()?, &found.image.base.grid);
     let mut group = Group::new("Fig. 23: an M-moulding surface through two curves", "A planar curve of 41 points, and one in space of 25.");
     exact(&mut group, &[&grid, base]);
     met(&mut group, "the planar curve", farthest(&grid.column(0), &curve), &grid);
     met(&mut group, "the curve in space", farthest(grid.row(0), &rail), &grid);
-    group.plain("edges reversed in the base", found.reversed_count as f64);
+    group.at_most("edges reversed in the base", found.reversed_count as f64, 0.0);
     let plane = Plane::fitting(&rail);
     let bend = rail.iter().map(|&point| plane.height(point).abs()).fold(0.0, f64::max) / grid.diagonal();
     group.at_least("the second curve off any plane / diagonal", bend, 1e-3);

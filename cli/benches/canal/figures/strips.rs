@@ -1,6 +1,6 @@
 //! Surfaces on circular strips: Figs. 5, 7 and 15.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -9,10 +9,12 @@ use glam::DVec3;
 use shapeop::geometry::canal::closing::{ClosedStrip, closed_frame, closed_strip};
 use shapeop::geometry::canal::frame::{Frame, closing_gap};
 use shapeop::geometry::canal::net::Net;
+use shapeop::geometry::canal::normals::{Guide, fitting_tangent};
 use shapeop::geometry::canal::smoothing::{Input, Options, smooth};
 use shapeop::geometry::canal::strip::{Strip, of_border_edges};
 use shapeop::geometry::canal::strip_of_circles::from_circles;
 use shapeop::geometry::circle::Circle;
+use shapeop::mesh::curve::{Curve, Spline};
 
 use super::{exact, met};
 use crate::group::Group;
@@ -29,14 +31,12 @@ pub fn figure5(folder: &Path) -> Result<Group> {
     let circles: Vec<Circle> = (0..8).map(circle).collect();
     let found = from_circles(&circles, None, None)?;
     let strip = &found.strip;
-    let mut frame = Frame::of_tangent_two(DVec3::Z, DVec3::Y).context("no frame")?;
-    let net = Net::new(strip.grid()?, frame)?;
-    // The half above the plane.
-    let mut fine = net.refined(4, 16)?;
-    if fine.grid().points().iter().any(|point| point.z < -1e-6) {
-        frame = Frame::of_tangent_two(DVec3::NEG_Z, DVec3::Y).context("no frame")?;
-        fine = Net::new(strip.grid()?, frame)?.refined(4, 16)?;
-    }
+    // Sections rise upright from the plane; the tangent along the guide is the one that alternates least.
+    let curve = Spline::through(&strip.guide, false)?;
+    let tangents: Vec<DVec3> = curve.knots().iter().map(|&knot| curve.tangent(knot)).collect();
+    let along = fitting_tangent(&Guide::new(&strip.guide, &tangents, false)?)?;
+    let frame = Frame::of_tangent_two(DVec3::Z, along.cross(DVec3::Z)).context("no frame")?;
+    let fine = Net::new(strip.grid()?, frame)?.refined(4, 16)?;
     let grid = fine.grid();
     let mut group = Group::new("Fig. 5: a canal surface from eight circles in a plane", "The half above the plane; 4 × 16 quads to each patch.");
     exact(&mut group, &[grid]);
@@ -96,36 +96,31 @@ pub fn figure7(folder: &Path) -> Result<Group> {
     Ok(group)
 }
 
-/// A strip around a circle whose other border winds on a sphere; scaled so that the closing quad is as its neighbours.
+/// A strip around a circle whose other border winds on a sphere. One half is scaled so that it ends opposite to its start, where its
+/// mirror image goes on; the last quad is left to [`closed_strip`].
 fn ring() -> Result<ClosedStrip> {
-    let count = 48;
-    let at = |k: usize| TAU * k as f64 / count as f64;
-    let guide: Vec<DVec3> = (0..count).map(|k| 3.0 * DVec3::new(at(k).cos(), at(k).sin(), 0.0)).collect();
-    let start = DVec3::new(2.75, 0.0, 3.1);
-    let factor = |k: f64| 1.0 + 0.22 * (3.0 * TAU * (k + 0.5) / 48.0).sin();
-    let close = |scale: f64| -> Result<(ClosedStrip, f64)> {
-        let edges: Vec<f64> =
-            (0..count - 2).map(|k| scale * factor(k as f64) * guide[0].distance(guide[1])).collect();
-        let closed = closed_strip(&of_border_edges(&guide[..count - 1], start, &edges)?, guide[count - 1])?;
-        let border = &closed.border;
-        let turned: f64 = (0..count)
-            .map(|k| {
-                let (a, b) = (border[k], border[(k + 1) % count]);
-                let step = b.y.atan2(b.x) - a.y.atan2(a.x);
-                if k + 2 < count { step.rem_euclid(TAU) } else { 0.0 }
-            })
-            .sum();
-        Ok((closed, turned))
+    let at = |k: usize| TAU * k as f64 / 48.0;
+    let guide: Vec<DVec3> = (0..48).map(|k| 3.0 * DVec3::new(at(k).cos(), at(k).sin(), 0.0)).collect();
+    let start = DVec3::new(2.9, 0.0, 3.0);
+    let half = |scale: f64| -> Result<(Strip, f64)> {
+        let factor = |k: usize| 1.0 + 0.16 * (3.0 * (at(k) + 0.5 * at(1))).sin();
+        let edges: Vec<f64> = (0..24).map(|k| scale * factor(k) * guide[0].distance(guide[1])).collect();
+        let strip = of_border_edges(&guide[..25], start, &edges)?;
+        let turns = strip.border.windows(2).map(|ends| ends[0].truncate().angle_to(ends[1].truncate()));
+        let turn = turns.sum();
+        Ok((strip, turn))
     };
-    // Two of the edges are not prescribed: the others shall turn by the rest.
-    let wanted = TAU * (count - 2) as f64 / count as f64;
-    let (mut low, mut high) = (0.6, 1.15);
+    let (mut low, mut high) = (0.6, 1.3);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        let turned = close(middle).map_or(f64::INFINITY, |(_, turned)| turned);
-        if turned < wanted { low = middle } else { high = middle }
+        let turn = half(middle).map_or(f64::INFINITY, |(_, turn)| turn);
+        if turn < PI { low = middle } else { high = middle }
     }
-    let (closed, _) = close(low)?;
+    let border = half(low)?.0.border;
+    let mirrored = border[2..24].iter().rev().map(|point| DVec3::new(point.x, -point.y, point.z));
+    let border: Vec<DVec3> = border.iter().copied().chain(mirrored).collect();
+    let edges: Vec<f64> = border.windows(2).map(|ends| ends[0].distance(ends[1])).collect();
+    let closed = closed_strip(&of_border_edges(&guide[..47], start, &edges)?, guide[47])?;
     if closed.flipped.is_empty() { Ok(closed) } else { bail!("the ring is crossed at {:?}", closed.flipped) }
 }
 
@@ -133,7 +128,8 @@ pub fn figure15(folder: &Path) -> Result<Group> {
     let closed = ring()?;
     let across = closed.border[0] - closed.guide[0];
     let tangent = DVec3::Y;
-    let wish = Frame::of_tangent_one(tangent, across.cross(tangent).normalize() + 0.35 * DVec3::Z).context("no frame")?;
+    // Sections that lean outwards at the ring.
+    let wish = Frame::of_tangent_one(tangent, tangent.cross(across).normalize() - 0.35 * DVec3::Z).context("no frame")?;
     let frame = closed_frame(&closed.guide, &wish)?;
     let net = Net::new(closed.grid()?, frame)?;
     let fine = net.refined(2, 14)?;
