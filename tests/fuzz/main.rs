@@ -6,6 +6,7 @@
 //! made.
 
 mod calls;
+mod canal;
 
 use std::ffi::{CString, c_int, c_void};
 use std::ptr;

@@ -1,0 +1,211 @@
+//! Random sequences of calls on super-canal surfaces: valid, stale, foreign and null handles, numbers that are not finite, counts that
+//! do not fit. None crashes, none hands out a number that is not finite, and a refused one changes nothing and says why.
+
+use std::ffi::c_int;
+use std::ptr;
+
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
+use shapeop::capi::shapeop_err::*;
+use shapeop::capi::*;
+
+use super::{check, last_error};
+
+/// Sequences of the ordinary run.
+const SEQUENCES: u32 = 2_000;
+
+#[derive(Clone, Debug)]
+enum Call {
+    Invert([f64; 3], f64),
+    Translate([f64; 3]),
+    Scale(f64),
+    Rotate([f64; 3], f64),
+    Combescure(Vec<f64>, Vec<f64>),
+    Undo,
+    Refined(c_int, c_int),
+    Evaluate(c_int, c_int, f64, f64),
+    Points(c_int, bool),
+    Gap,
+    Residual,
+    Text,
+    Create(Vec<f64>, c_int, c_int, c_int, [f64; 6]),
+    Revolution(Vec<f64>, [f64; 3], f64, c_int),
+    Strip(Vec<f64>, [f64; 3], f64, u32),
+    Holonomy(Vec<f64>),
+    Folds(Vec<f64>, c_int, c_int),
+    InvertPoints(Vec<f64>, [f64; 3], f64),
+}
+
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        12 => -2.0..2.0_f64,
+        2 => prop_oneof![Just(0.0), Just(1.0), Just(-1.0)],
+        1 => prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(1e308), Just(-1e200), Just(5e-324)],
+    ]
+}
+
+fn integer() -> impl Strategy<Value = c_int> {
+    prop_oneof![8 => 0..6_i32, 1 => any::<c_int>(), 1 => Just(-1)]
+}
+
+fn vector() -> impl Strategy<Value = [f64; 3]> {
+    [number(), number(), number()]
+}
+
+fn numbers(most: usize) -> impl Strategy<Value = Vec<f64>> {
+    proptest::collection::vec(number(), 0..most)
+}
+
+fn call() -> impl Strategy<Value = Call> {
+    prop_oneof![
+        (vector(), number()).prop_map(|(center, ratio)| Call::Invert(center, ratio)),
+        vector().prop_map(Call::Translate),
+        number().prop_map(Call::Scale),
+        (vector(), number()).prop_map(|(axis, angle)| Call::Rotate(axis, angle)),
+        (proptest::collection::vec(number(), 2..5), proptest::collection::vec(number(), 3..6))
+            .prop_map(|(column, row)| Call::Combescure(column, row)),
+        Just(Call::Undo),
+        (integer(), integer()).prop_map(|(one, two)| Call::Refined(one, two)),
+        (integer(), integer(), 0.0..1.0_f64, number()).prop_map(|(i, j, u, v)| Call::Evaluate(i, j, u, v)),
+        (integer(), any::<bool>()).prop_map(|(capacity, is_null)| Call::Points(capacity, is_null)),
+        Just(Call::Gap),
+        Just(Call::Residual),
+        Just(Call::Text),
+        (proptest::collection::vec(number(), 48), integer(), integer(), 0..5_i32, [(); 6].map(|()| number()))
+            .prop_map(|(points, rows, columns, wraps, frame)| Call::Create(points, rows, columns, wraps, frame)),
+        (numbers(12), vector(), number(), integer())
+            .prop_map(|(p, axis, angle, n)| Call::Revolution(p, axis, angle, n)),
+        (numbers(24), vector(), number(), 0..9_u32).prop_map(|(p, start, length, f)| Call::Strip(p, start, length, f)),
+        numbers(24).prop_map(Call::Holonomy),
+        (proptest::collection::vec(number(), 48), 0..5_i32, 0..5_i32).prop_map(|(p, r, c)| Call::Folds(p, r, c)),
+        (numbers(12), vector(), number()).prop_map(|(p, center, ratio)| Call::InvertPoints(p, center, ratio)),
+    ]
+}
+
+/// The points of a live surface; `None` if there is none.
+fn points_of(surface: *mut ShapeOpCanal) -> Option<Vec<f64>> {
+    let mut count = 0;
+    // SAFETY: a size query, then an array of that many points.
+    unsafe {
+        if shapeop_canalPoints(surface, ptr::null_mut(), 0, &mut count) != SO_SUCCESS {
+            return None;
+        }
+        let mut points = vec![f64::NAN; 3 * count as usize];
+        shapeop_canalPoints(surface, points.as_mut_ptr(), count, &mut count);
+        Some(points)
+    }
+}
+
+fn bits(points: &Option<Vec<f64>>) -> Option<Vec<u64>> {
+    points.as_ref().map(|points| points.iter().map(|number| number.to_bits()).collect())
+}
+
+/// Whether a new surface was made; it is deleted.
+fn made(surface: *mut ShapeOpCanal) -> bool {
+    shapeop_canalDelete(surface);
+    !surface.is_null()
+}
+
+/// Makes the call; whether it was carried out, and the numbers that it handed out.
+fn make(surface: *mut ShapeOpCanal, call: &Call) -> (bool, Vec<f64>) {
+    let mut room = vec![0.0; 64];
+    let mut count = 0;
+    let out = room.as_mut_ptr();
+    let none = ptr::null_mut::<f64>();
+    // SAFETY: arrays of the stated lengths; `room` is as large as any of these writes.
+    let is_done = unsafe {
+        match call {
+            Call::Invert(center, ratio) => shapeop_canalInvert(surface, center.as_ptr(), *ratio) == SO_SUCCESS,
+            Call::Translate(vector) => shapeop_canalTranslate(surface, vector.as_ptr()) == SO_SUCCESS,
+            Call::Scale(factor) => shapeop_canalScale(surface, *factor) == SO_SUCCESS,
+            Call::Rotate(axis, angle) => shapeop_canalRotate(surface, axis.as_ptr(), *angle) == SO_SUCCESS,
+            Call::Combescure(column, row) => {
+                let (a, b) = (column.len() as c_int, row.len() as c_int);
+                shapeop_canalCombescureFactors(surface, column.as_ptr(), a, row.as_ptr(), b) == SO_SUCCESS
+            }
+            Call::Undo => shapeop_canalUndo(surface) >= 0,
+            Call::Refined(one, two) => made(shapeop_canalRefined(surface, *one % 1000, *two % 1000)),
+            Call::Evaluate(i, j, u, v) => shapeop_canalEvaluate(surface, *i, *j, *u, *v, out, out.add(3)) == SO_SUCCESS,
+            Call::Points(capacity, is_null) => {
+                // Never more room stated than there is.
+                let capacity = (*capacity).min(20);
+                let to = if *is_null { none } else { out };
+                shapeop_canalPoints(surface, to, capacity, &mut count) == SO_SUCCESS
+            }
+            Call::Gap => shapeop_canalClosingGap(surface, out) == SO_SUCCESS,
+            Call::Residual => shapeop_canalMembraneResidual(surface, out) == SO_SUCCESS,
+            Call::Text => !shapeop_canalText(surface).is_null(),
+            Call::Create(points, rows, columns, wraps, frame) => {
+                let fits = i64::from(*rows) * i64::from(*columns) <= 16;
+                let data = if fits { points.as_ptr() } else { ptr::null() };
+                made(shapeop_canalCreate(data, *rows, *columns, *wraps, frame.as_ptr(), 3))
+            }
+            Call::Revolution(points, axis, angle, columns) => {
+                let (origin, count) = ([0.0; 3], points.len() as c_int / 3);
+                let (profile, axis) = (points.as_ptr(), axis.as_ptr());
+                made(shapeop_canalRevolution(profile, count, origin.as_ptr(), axis, *angle, *columns % 1000))
+            }
+            Call::Strip(points, start, length, flags) => {
+                let (count, lengths) = (points.len() as c_int / 3, vec![*length; points.len()]);
+                let (guide, start, lengths) = (points.as_ptr(), start.as_ptr(), lengths.as_ptr());
+                let flag = ptr::null_mut();
+                let code = shapeop_canalStrip(guide, count, start, lengths, *flags, out, none, none, flag, flag, none);
+                code == SO_SUCCESS
+            }
+            Call::Holonomy(points) => {
+                let count = points.len() as c_int / 3;
+                shapeop_canalHolonomy(points.as_ptr(), count, out, out.add(9), &mut count.clone(), out.add(10))
+                    == SO_SUCCESS
+            }
+            Call::Folds(points, rows, columns) => {
+                let flags = ptr::null_mut();
+                let code = shapeop_canalFolds(points.as_ptr(), *rows, *columns, 0, out, flags, out.add(8), flags);
+                code == SO_SUCCESS
+            }
+            Call::InvertPoints(points, center, ratio) => {
+                let count = points.len() as c_int / 3;
+                shapeop_canalInvertPoints(points.as_ptr(), count, center.as_ptr(), *ratio, out) == SO_SUCCESS
+            }
+        }
+    };
+    (is_done, room)
+}
+
+fn run(sequence: &[(usize, Call)]) -> Result<(), TestCaseError> {
+    let profile = [2.7, 0.0, 0.0, 2.5, 0.0, 0.5, 2.0, 0.0, 0.7, 1.5, 0.0, 0.5];
+    // SAFETY: 4 points and two vectors.
+    let torus =
+        unsafe { shapeop_canalRevolution(profile.as_ptr(), 4, [0.0; 3].as_ptr(), [0.0, 0.0, 1.0].as_ptr(), 1.5, 5) };
+    let stale = shapeop_canalCopy(torus);
+    shapeop_canalDelete(stale);
+    let solver = shapeop_create();
+    let handles =
+        [torus, torus, torus, stale, solver.cast(), ptr::null_mut(), ptr::without_provenance_mut(0x7fff_1234)];
+    for (which, call) in sequence {
+        let surface = handles[which % handles.len()];
+        let before = points_of(surface);
+        let (is_done, room) = make(surface, call);
+        let message = last_error(ptr::null_mut());
+        let after = points_of(surface);
+        check(is_done == message.is_empty(), &format!("{call:?}: {is_done}, but {message:?}"))?;
+        check(!message.contains("inside the library"), &message)?;
+        check(room.iter().all(|number| number.is_finite()), &format!("{call:?} handed out {room:?}"))?;
+        let finite = |points: &Vec<f64>| points.iter().all(|number| number.is_finite());
+        check(after.as_ref().is_none_or(finite), &format!("{call:?} left points that are not finite"))?;
+        if !is_done {
+            check(bits(&before) == bits(&after), &format!("{call:?} was refused and changed the surface"))?;
+            check(room.iter().all(|number| *number == 0.0), &format!("{call:?} was refused and wrote {room:?}"))?;
+        }
+    }
+    shapeop_canalDelete(torus);
+    shapeop_delete(solver);
+    Ok(())
+}
+
+#[test]
+fn no_sequence_of_calls_on_surfaces_crashes() {
+    let config = Config { cases: SEQUENCES, failure_persistence: None, ..Config::default() };
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[17; 32]);
+    let sequences = proptest::collection::vec((0..7_usize, call()), 1..25);
+    TestRunner::new_with_rng(config, rng).run(&sequences, |sequence| run(&sequence)).unwrap();
+}
