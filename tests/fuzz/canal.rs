@@ -9,7 +9,7 @@ use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRu
 use shapeop::capi::shapeop_err::*;
 use shapeop::capi::*;
 
-use super::{check, last_error};
+use super::last_error;
 
 /// Sequences of the ordinary run.
 const SEQUENCES: u32 = 2_000;
@@ -169,6 +169,10 @@ fn make(surface: *mut ShapeOpCanal, call: &Call) -> (bool, Vec<f64>) {
         }
     };
     (is_done, room)
+}
+
+fn check(is_right: bool, what: &str) -> Result<(), TestCaseError> {
+    if is_right { Ok(()) } else { Err(TestCaseError::fail(what.to_owned())) }
 }
 
 fn run(sequence: &[(usize, Call)]) -> Result<(), TestCaseError> {
