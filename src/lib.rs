@@ -30,8 +30,9 @@
 //!         ▼                                  │ recipes: "planarise these faces"
 //!    constraints ─ per type: projection ·    │
 //!         │        rows · scalars · violation│
-//!         ▼                               mesh ─ files, topology, measures
-//!    linalg ─ AᵀA, ordering, factor, solve
+//!         ▼                               geometry ─ canal: super-canal surfaces
+//!    linalg ─ AᵀA, ordering, factor, solve   ▲
+//!         │                               mesh ─ files, topology, measures, grids, curves
 //!         ▼
 //!    solver ─ local step ⇄ global step; static, dynamic
 //!         ▼

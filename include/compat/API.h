@@ -31,7 +31,15 @@ typedef enum shapeop_err {
     SO_NULL_POINTER = 23,
     SO_INVALID_INPUT = 24,
     SO_TOO_LARGE = 25,
-    SO_INTERNAL = 26
+    SO_INTERNAL = 26,
+    SO_NOT_GRID = 27,
+    SO_NOT_PLANAR = 28,
+    SO_NOT_CIRCULAR = 29,
+    SO_DEGENERATE = 30,
+    SO_NO_INTERSECTION = 31,
+    SO_NO_SOLUTION = 32,
+    SO_SINGULAR = 33,
+    SO_NOT_CLOSED = 34
 } shapeop_err;
 
 #endif

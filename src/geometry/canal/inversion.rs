@@ -16,6 +16,9 @@ pub const AT_INFINITY: f64 = 1e-12;
 /// Distance from the center of inversion, relative to the shape's own size, below which a circle or sphere runs through it.
 const THROUGH_CENTER: f64 = 1e-12;
 
+/// How many points are inverted side by side.
+const LANES: usize = 4;
+
 /// An inversion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inversion {
@@ -39,6 +42,44 @@ pub enum GeneralSphere {
     Sphere(Sphere),
     /// A plane: its point nearest to the center of inversion, and a unit normal.
     Plane(DVec3, DVec3),
+}
+
+/// What is known of the squared distances of points from the center.
+#[derive(Clone, Copy)]
+struct Distances {
+    nearest: f64,
+    farthest: f64,
+    /// NaN passes comparisons, but no sum.
+    sum: f64,
+}
+
+impl Default for Distances {
+    fn default() -> Self {
+        Self { nearest: f64::INFINITY, farthest: 0.0, sum: 0.0 }
+    }
+}
+
+impl Distances {
+    #[inline]
+    fn add(&mut self, squared: f64) {
+        // Not `min` and `max`, which take longer to pass NaN over.
+        self.nearest = if squared < self.nearest { squared } else { self.nearest };
+        self.farthest = if squared > self.farthest { squared } else { self.farthest };
+        self.sum += squared;
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            nearest: self.nearest.min(other.nearest),
+            farthest: self.farthest.max(other.farthest),
+            sum: self.sum + other.sum,
+        }
+    }
+
+    /// Whether all points are finite and none is at the center within the extent's round-off.
+    fn are_good(self) -> bool {
+        self.sum.is_finite() && self.farthest > 0.0 && self.nearest > AT_INFINITY * AT_INFINITY * self.farthest
+    }
 }
 
 impl Inversion {
@@ -80,33 +121,24 @@ impl Inversion {
     /// A coordinate that is not finite; status `Degenerate`: a point so near the center that its image is at infinity. The
     /// place is `points[i]`.
     pub fn points(&self, points: &[DVec3]) -> Result<Vec<DVec3>> {
-        // Both are recognised in the images: one pass where nothing errs.
-        let far = self.farthest(points);
-        let image = |&point: &DVec3| {
-            let q = point - self.center;
-            self.center + (self.ratio / q.length_squared()) * q
-        };
+        // One pass: what must be known of the distances is gathered beside the images, in lanes that do not wait for each other.
         let mut images = Vec::with_capacity(points.len());
-        images.extend(points.iter().map(image));
-        if far < f64::INFINITY {
-            return Ok(images);
+        let mut distances = [Distances::default(); LANES];
+        let (chunks, rest) = points.as_chunks::<LANES>();
+        for chunk in chunks {
+            let q = chunk.map(|point| point - self.center);
+            let squared = q.map(DVec3::length_squared);
+            let factor = squared.map(|squared| self.ratio / squared);
+            images.extend_from_slice(&std::array::from_fn::<_, LANES, _>(|lane| self.center + factor[lane] * q[lane]));
+            distances.iter_mut().zip(squared).for_each(|(lane, squared)| lane.add(squared));
         }
-        Err(self.refusal(points))
-    }
-
-    /// Infinite where a point is not finite or at the center within the extent's round-off, else finite.
-    fn farthest(&self, points: &[DVec3]) -> f64 {
-        let (mut nearest, mut sum) = (f64::INFINITY, 0.0_f64);
-        let mut farthest = 0.0_f64;
-        for &point in points {
-            let squared = point.distance_squared(self.center);
-            nearest = nearest.min(squared);
-            farthest = farthest.max(squared);
-            // NaN passes `min` and `max`, but no sum.
-            sum += squared;
+        for &point in rest {
+            let q = point - self.center;
+            images.push(self.center + (self.ratio / q.length_squared()) * q);
+            distances[0].add(q.length_squared());
         }
-        let is_near = nearest <= AT_INFINITY * AT_INFINITY * farthest || farthest == 0.0 && !points.is_empty();
-        if sum.is_finite() && !is_near { farthest } else { f64::INFINITY }
+        let all = distances.into_iter().fold(Distances::default(), Distances::with);
+        if points.is_empty() || all.are_good() { Ok(images) } else { Err(self.refusal(points)) }
     }
 
     fn refusal(&self, points: &[DVec3]) -> Error {

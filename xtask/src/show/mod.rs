@@ -1,8 +1,10 @@
 //! `cargo xtask show AREA`: what the library promises, measured, each figure beside its target.
 
 mod bindings;
+mod canal;
 mod engine;
 mod exploration;
+mod program;
 mod speed;
 
 use anyhow::{Context, Result, bail};
@@ -18,6 +20,8 @@ pub enum Area {
     Speed,
     /// The Python package, Grasshopper components and files, all languages, the paper's examples.
     Bindings,
+    /// Super-canal surfaces: ground truths, speed, attainable lengths, the paper's figures with pictures, named families.
+    Canal,
     /// Hard constraints: projections, exact planarity, IPOPT, the paper's figures, a large drag, contradictions, weights.
     Exploration,
 }
@@ -29,6 +33,7 @@ pub fn run(area: Area, reuse: bool, repetitions: Option<usize>) -> Result<()> {
         Area::Engine => engine::show(&mut figures)?,
         Area::Speed => speed::show(&mut figures, reuse, repetitions)?,
         Area::Exploration => exploration::show(&mut figures)?,
+        Area::Canal => canal::show(&mut figures)?,
         Area::Bindings => bindings::show(&mut figures)?,
     }
     println!();

@@ -3,14 +3,10 @@
 mod figure12;
 mod plot;
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
 use anyhow::{Context, Result};
-use serde_json::Value;
 
 use super::Figures;
-use crate::bench::measure;
+use super::program::Program;
 use crate::shell;
 
 /// Types whose projections are new, each against a multi-start optimiser, and its cases.
@@ -25,7 +21,7 @@ const SWEEPS: f64 = 300.0;
 const BOUND: f64 = 4.0;
 
 pub fn show(figures: &mut Figures) -> Result<()> {
-    let program = Program(measure::build("exploration", "release")?);
+    let program = Program::build("exploration")?;
     projections(figures)?;
     program.show(figures, &["costa"])?;
     let images = shell::root().join("docs/images/exploration");
@@ -34,30 +30,6 @@ pub fn show(figures: &mut Figures) -> Result<()> {
     program.show(figures, &["drag"])?;
     contradictions(figures)?;
     program.show(figures, &["sensitivities"])
-}
-
-/// The program that measures.
-struct Program(PathBuf);
-
-impl Program {
-    fn run(&self, words: &[&str]) -> Result<String> {
-        shell::output(Command::new(&self.0).args(words).current_dir(shell::root()))
-    }
-
-    /// Prints the groups of figures that it tells.
-    fn show(&self, figures: &mut Figures, words: &[&str]) -> Result<()> {
-        for line in self.run(words)?.lines() {
-            let group: Value = serde_json::from_str(line)?;
-            let text = |name: &str| group[name].as_str().unwrap_or_default();
-            figures.group(text("title"));
-            figures.says(text("claim"));
-            group["measures"].as_array().context("no measures")?.iter().try_for_each(|each| figures.measure(each))?;
-            if let Some(picture) = group["picture"].as_str() {
-                figures.exactly("picture", usize::from(Path::new(picture).is_file()), 1);
-            }
-        }
-        Ok(())
-    }
 }
 
 fn projections(figures: &mut Figures) -> Result<()> {
