@@ -51,10 +51,8 @@ fn base(kind: BaseKind) -> Result<Net> {
             net(revolution(&profile, DVec3::ZERO, DVec3::Z, 0.9 * PI, COLUMNS)?)?
         }
         BaseKind::Moulding => {
-            let rail: Vec<DVec3> = (0..ROWS)
-                .map(|k| 4.0 * k as f64 / 16.0)
-                .map(|x| DVec3::new(x, 0.5 * (1.4 * x).sin(), 0.0))
-                .collect();
+            let rail: Vec<DVec3> =
+                (0..ROWS).map(|k| 4.0 * k as f64 / 16.0).map(|x| DVec3::new(x, 0.5 * (1.4 * x).sin(), 0.0)).collect();
             let side = (rail[1] - rail[0]).cross(DVec3::NEG_Z).normalize();
             let profile: Vec<DVec3> = (0..COLUMNS)
                 .map(|k| 0.5 * PI * k as f64 / 12.0)
@@ -144,7 +142,8 @@ pub fn groups(folder: &Path) -> Result<Vec<Group>> {
     }
     let scene = Scene {
         title: "Fig. 4: named families of super-canal surfaces".to_owned(),
-        subtitle: "C: a Combescure transformation, M: a Möbius transformation; orange: column 0, blue: row 0".to_owned(),
+        subtitle: "C: a Combescure transformation, M: a Möbius transformation; orange: column 0, blue: row 0"
+            .to_owned(),
         columns: 3,
         views,
     };

@@ -70,7 +70,10 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
     let touching = spheres_at_points(guide.points(), &normals, &curve)?;
     let section = beyond(&guide, &curve, ANGLE)?;
     let fit = fit_guide(&guide, &curve, &options(0, 15, ANGLE, section))?;
-    let mut group = Group::new("Figs. 8 to 11: a canal surface that fits two curves", "41 circles through points of the first curve; spheres touch the second; 15 points to each circle.");
+    let mut group = Group::new(
+        "Figs. 8 to 11: a canal surface that fits two curves",
+        "41 circles through points of the first curve; spheres touch the second; 15 points to each circle.",
+    );
     exact(&mut group, &[&fit.grid]);
     curves_met(&mut group, &fit, &first, &second)?;
     group.at_most("F of equation 6", fit.strip.spheres.residual, 1e-20);
@@ -96,7 +99,8 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
         .grid(&developable, WHITE)
         .grid(&tangential, BLUE_FACE)
         .line(&sampled(&first, 120), ORANGE, 3.6);
-    let mut ten = curves(view("10: the centres' locus, as far from both curves").grid(&developable, WHITE)).line(&centers, BLUE, 4.0);
+    let mut ten = curves(view("10: the centres' locus, as far from both curves").grid(&developable, WHITE))
+        .line(&centers, BLUE, 4.0);
     for (it, point) in touching.touching.iter().zip(guide.points()).step_by(4) {
         ten = ten.line(&[*point, it.sphere.center, second.point(it.foot.parameter)], INK, 1.0);
     }
@@ -106,7 +110,9 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
     }
     let scene = Scene {
         title: "Figs. 8 to 11: a canal surface through one curve, touching another".to_owned(),
-        subtitle: "Orange: the line of curvature given; red: the curve to fit; dark blue: the locus of the spheres' centres".to_owned(),
+        subtitle:
+            "Orange: the line of curvature given; red: the curve to fit; dark blue: the locus of the spheres' centres"
+                .to_owned(),
         columns: 2,
         views: vec![eight, nine, ten, eleven],
     };
@@ -116,7 +122,9 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
 
 /// Two planar curves, the first on the ground.
 fn planar_pair(kind: usize) -> Result<[Spline; 2]> {
-    let through = |at: &dyn Fn(f64) -> DVec3| Spline::through(&(0..16).map(|k| at(f64::from(k) / 15.0)).collect::<Vec<_>>(), false);
+    let through = |at: &dyn Fn(f64) -> DVec3| {
+        Spline::through(&(0..16).map(|k| at(f64::from(k) / 15.0)).collect::<Vec<_>>(), false)
+    };
     Ok(match kind {
         0 => [
             through(&|s| DVec3::new(5.0 * s, 0.7 * (5.0 * s).sin(), 0.0))?,
@@ -128,7 +136,10 @@ fn planar_pair(kind: usize) -> Result<[Spline; 2]> {
         ],
         _ => {
             let arc = |radius: f64, s: f64| radius * DVec3::new((2.2 * s).cos(), (2.2 * s).sin(), 0.0);
-            [through(&|s| arc(3.2 + 0.25 * (7.0 * s).sin(), s))?, through(&|s| arc(1.7, 1.04 * s - 0.02) + 1.1 * DVec3::Z)?]
+            [
+                through(&|s| arc(3.2 + 0.25 * (7.0 * s).sin(), s))?,
+                through(&|s| arc(1.7, 1.04 * s - 0.02) + 1.1 * DVec3::Z)?,
+            ]
         }
     })
 }
@@ -137,16 +148,24 @@ pub fn figure24(folder: &Path) -> Result<Group> {
     let mut group = Group::new("Fig. 24: canal surfaces that fit two planar curves", "Three pairs, 49 circles each.");
     let mut views = Vec::new();
     let mut grids = Vec::new();
-    for (kind, angle, title, azimuth) in
-        [(0, -0.55, "both on the ground", -20.0), (1, -0.75, "on the ground and in an upright plane", -20.0), (2, -0.5, "in parallel planes", 200.0)]
-    {
+    for (kind, angle, title, azimuth) in [
+        (0, -0.55, "both on the ground", -20.0),
+        (1, -0.75, "on the ground and in an upright plane", -20.0),
+        (2, -0.5, "in parallel planes", 200.0),
+    ] {
         let [first, second] = planar_pair(kind)?;
         let fit = fit_beyond(&first, &second, 49, angle)?;
         curves_met(&mut group, &fit, &first, &second)?;
         let view = View::new(title, azimuth, 34.0).grid(&fit.grid, WHITE);
         let caption = format!("mesh off the red curve: {:.1e} of the diagonal", fit.deviation / fit.grid.diagonal());
-        views.push(view.line(&sampled(&first, 120), ORANGE, 3.4).line(&sampled(&second, 120), RED, 3.4).caption(caption));
-        group.at_most(&format!("{title}: mesh off the second curve / diagonal"), fit.deviation / fit.grid.diagonal(), 2e-3);
+        views.push(
+            view.line(&sampled(&first, 120), ORANGE, 3.4).line(&sampled(&second, 120), RED, 3.4).caption(caption),
+        );
+        group.at_most(
+            &format!("{title}: mesh off the second curve / diagonal"),
+            fit.deviation / fit.grid.diagonal(),
+            2e-3,
+        );
         grids.push(fit.grid);
     }
     exact(&mut group, &grids.iter().collect::<Vec<_>>());
@@ -161,13 +180,18 @@ pub fn figure24(folder: &Path) -> Result<Group> {
 }
 
 pub fn figure25(folder: &Path) -> Result<Group> {
-    let through = |at: &dyn Fn(f64) -> DVec3| Spline::through(&(0..24).map(|k| at(f64::from(k) / 23.0)).collect::<Vec<_>>(), false);
+    let through = |at: &dyn Fn(f64) -> DVec3| {
+        Spline::through(&(0..24).map(|k| at(f64::from(k) / 23.0)).collect::<Vec<_>>(), false)
+    };
     // A parabola, and a curve that comes near the centre of curvature at its vertex, (0, 0.8).
     let first = through(&|s| DVec3::new(4.0 * s - 2.0, 0.625 * (4.0 * s - 2.0).powi(2), 0.0))?;
     let second = through(&|s| DVec3::new(1.3 * (2.0 * s - 1.0), 0.72 + 2.0 * (2.0 * s - 1.0).powi(2), 0.55))?;
     let fit = fit_beyond(&first, &second, 61, -0.5)?;
     let folds = Folds::of(&fit.grid);
-    let mut group = Group::new("Fig. 25: lines of curvature concentrate near the evolute of the guide", "A parabola, and a second curve near the centre of curvature at its vertex; 61 circles.");
+    let mut group = Group::new(
+        "Fig. 25: lines of curvature concentrate near the evolute of the guide",
+        "A parabola, and a second curve near the centre of curvature at its vertex; 61 circles.",
+    );
     exact(&mut group, &[&fit.grid]);
     curves_met(&mut group, &fit, &first, &second)?;
     let reach = folds.evolute_ratios.iter().copied().fold(0.0, f64::max);
@@ -190,7 +214,11 @@ pub fn figure25(folder: &Path) -> Result<Group> {
         let view = View::new(title, 0.0, height).grid_of(&fit.grid, 1.0, &colour);
         view.line(&sampled(&first, 120), ORANGE, 3.4).line(&sampled(&second, 120), RED, 3.4)
     };
-    let plan = view("plan, with the evolute of the guide in blue", 90.0).line(&evolute.iter().map(|p| *p + 2.0 * DVec3::Z).collect::<Vec<_>>(), BLUE, 2.4);
+    let plan = view("plan, with the evolute of the guide in blue", 90.0).line(
+        &evolute.iter().map(|p| *p + 2.0 * DVec3::Z).collect::<Vec<_>>(),
+        BLUE,
+        2.4,
+    );
     let words = format!("{} of {} rows near the evolute", folds.rows_near_evolute.len(), fit.grid.rows());
     let scene = Scene {
         title: "Fig. 25: lines of curvature concentrate near the evolute".to_owned(),
