@@ -120,7 +120,6 @@ mod tests {
 
     use super::super::canal::{CanalArgs, CanalCommand};
     use super::super::{Cli, Command as Asked};
-    use super::*;
 
     #[test]
     fn links_keep_their_order() {
