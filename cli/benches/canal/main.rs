@@ -1,9 +1,9 @@
 //! Measurements of super-canal surfaces for `cargo xtask show canal`, and the drawing of the paper's figures.
 
-#[path = "../exploration/group.rs"]
-mod group;
 mod families;
 mod figures;
+#[path = "../exploration/group.rs"]
+mod group;
 mod lengths;
 mod scene;
 mod shapes;

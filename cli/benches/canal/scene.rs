@@ -87,8 +87,14 @@ impl View {
     }
 
     pub fn circle(self, circle: &Circle, colour: Rgb, width: f64) -> Self {
-        let points: Vec<DVec3> =
-            (0..=72).map(|k| circle.point_at(circle.center + circle.radius * DVec3::new(0.3, 0.5, 0.8), f64::from(k) * 5_f64.to_radians())).collect();
+        let points: Vec<DVec3> = (0..=72)
+            .map(|k| {
+                circle.point_at(
+                    circle.center + circle.radius * DVec3::new(0.3, 0.5, 0.8),
+                    f64::from(k) * 5_f64.to_radians(),
+                )
+            })
+            .collect();
         self.line(&points, colour, width)
     }
 
@@ -147,14 +153,15 @@ impl Eye {
         (mean - self.middle).dot(self.toward) / self.radius
     }
 
-    /// From 0.62 to 1: lit from over the left shoulder, and a little from the right.
+    /// From 0.7 to 1: lit from over the left shoulder, and a little from the right.
     fn light(&self, corners: &[DVec3]) -> f64 {
-        let normal: DVec3 =
-            (0..corners.len()).map(|k| (corners[k] - corners[0]).cross(corners[(k + 1) % corners.len()] - corners[0])).sum();
+        let normal: DVec3 = (0..corners.len())
+            .map(|k| (corners[k] - corners[0]).cross(corners[(k + 1) % corners.len()] - corners[0]))
+            .sum();
         let Some(normal) = normal.try_normalize() else { return 1.0 };
         let normal = if normal.dot(self.toward) < 0.0 { -normal } else { normal };
         let lamp = (self.toward + 0.9 * self.up - 0.9 * self.right).normalize();
-        (0.62 + 0.40 * normal.dot(lamp).max(0.0) + 0.05 * normal.dot(self.right).max(0.0)).min(1.0)
+        (0.70 + 0.33 * normal.dot(lamp).max(0.0) + 0.06 * normal.dot(self.right).max(0.0)).min(1.0)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use glam::DVec3;
 use shapeop::geometry::canal::circle_strip::CircleStrip;
 use shapeop::geometry::canal::circles::Section;
@@ -31,25 +31,29 @@ fn options(circles: usize, columns: usize, angle: f64, section: Section) -> FitO
     }
 }
 
-/// Rows from the guide to a little beyond the second curve, wherever it passes.
-fn beyond(guide: &Guide, curve: &NearestOnCurve<'_>, angle: f64) -> Result<Section> {
+/// The surface of which every section goes from the guide a little beyond where the second curve passes it.
+fn fit_beyond(guide: &Guide, curve: &NearestOnCurve<'_>, columns: usize, angle: f64) -> Result<Fit> {
     let strip = CircleStrip::new(guide, Orientation::Angle(angle), curve)?;
-    let (mut last, mut to_rad) = (0.0_f64, 0.0_f64);
-    for ((circle, crossing), &point) in strip.circles.iter().zip(&strip.crossings).zip(guide.points()) {
-        let Some(crossing) = crossing else { continue };
-        let turn = circle.angle_between(point, crossing.point);
-        // Of the two ways round, the one that is nearer to that of the circle before; the short one at first.
-        let turn = if turn - last > PI { turn - TAU } else { turn };
-        last = turn;
-        to_rad = if turn.abs() > to_rad.abs() { turn } else { to_rad };
+    // Around a circle, of the two ways the one nearer to another angle.
+    let turn = |k: usize, to: DVec3, near: f64| {
+        let turn = strip.circles[k].angle_between(guide.points()[k], to);
+        turn + TAU * ((near - turn) / TAU).round()
+    };
+    let mut crossings: Vec<(usize, f64)> = Vec::new();
+    for (k, crossing) in strip.crossings.iter().enumerate() {
+        let last = crossings.last().map_or(0.0, |last| last.1);
+        crossings.extend(crossing.map(|crossing| (k, turn(k, crossing.point, last))));
     }
-    Ok(Section::Angles { from_rad: 0.0, to_rad: 1.03 * to_rad })
-}
-
-fn fit_beyond(first: &Spline, second: &Spline, circles: usize, angle: f64) -> Result<Fit> {
-    let guide = Guide::along(first, circles, Spacing::ArcLength)?;
-    let curve = NearestOnCurve::new(second)?;
-    Ok(fit_guide(&guide, &curve, &options(circles, 17, angle, beyond(&guide, &curve, angle)?))?)
+    let mut to_rad = crossings.first().map_or(1.0, |first| first.1);
+    let mut fitted = None;
+    for _ in 0..4 {
+        let section = Section::Angles { from_rad: 0.0, to_rad };
+        let fit = fit_guide(guide, curve, &options(0, columns, angle, section))?;
+        let short = crossings.iter().map(|&(k, turned)| turned / turn(k, fit.grid.at(k, columns - 1), to_rad));
+        to_rad *= 1.02 * short.fold(0.0, f64::max);
+        fitted = Some(fit);
+    }
+    fitted.context("no fit")
 }
 
 /// How near a fit is to its two curves: points of column 0 off the first, spheres off the second.
@@ -68,14 +72,16 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
     let guide = Guide::along(&first, 41, Spacing::ArcLength)?;
     let normals = rotation_minimising(&guide, Orientation::Angle(ANGLE))?;
     let touching = spheres_at_points(guide.points(), &normals, &curve)?;
-    let section = beyond(&guide, &curve, ANGLE)?;
-    let fit = fit_guide(&guide, &curve, &options(0, 15, ANGLE, section))?;
-    let mut group = Group::new("Figs. 8 to 11: a canal surface that fits two curves", "41 circles through points of the first curve; spheres touch the second; 15 points to each circle.");
+    let fit = fit_beyond(&guide, &curve, 15, ANGLE)?;
+    let mut group = Group::new(
+        "Figs. 8 to 11: a canal surface that fits two curves",
+        "41 circles through points of the first curve; spheres touch the second; 15 points to each circle.",
+    );
     exact(&mut group, &[&fit.grid]);
     curves_met(&mut group, &fit, &first, &second)?;
     group.at_most("F of equation 6", fit.strip.spheres.residual, 1e-20);
     group.at_most("mesh off the second curve / diagonal", fit.deviation / fit.grid.diagonal(), 1e-3);
-    let coarse = fit_guide(&Guide::along(&first, 21, Spacing::ArcLength)?, &curve, &options(0, 15, ANGLE, section))?;
+    let coarse = fit_beyond(&Guide::along(&first, 21, Spacing::ArcLength)?, &curve, 15, ANGLE)?;
     group.at_least("that of half as many circles, times as far", coarse.deviation / fit.deviation, 3.0);
 
     let centers: Vec<DVec3> = touching.touching.iter().map(|it| it.sphere.center).collect();
@@ -96,7 +102,8 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
         .grid(&developable, WHITE)
         .grid(&tangential, BLUE_FACE)
         .line(&sampled(&first, 120), ORANGE, 3.6);
-    let mut ten = curves(view("10: the centres' locus, as far from both curves").grid(&developable, WHITE)).line(&centers, BLUE, 4.0);
+    let mut ten = curves(view("10: the centres' locus, as far from both curves").grid(&developable, WHITE))
+        .line(&centers, BLUE, 4.0);
     for (it, point) in touching.touching.iter().zip(guide.points()).step_by(4) {
         ten = ten.line(&[*point, it.sphere.center, second.point(it.foot.parameter)], INK, 1.0);
     }
@@ -106,7 +113,9 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
     }
     let scene = Scene {
         title: "Figs. 8 to 11: a canal surface through one curve, touching another".to_owned(),
-        subtitle: "Orange: the line of curvature given; red: the curve to fit; dark blue: the locus of the spheres' centres".to_owned(),
+        subtitle:
+            "Orange: the line of curvature given; red: the curve to fit; dark blue: the locus of the spheres' centres"
+                .to_owned(),
         columns: 2,
         views: vec![eight, nine, ten, eleven],
     };
@@ -116,7 +125,9 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
 
 /// Two planar curves, the first on the ground.
 fn planar_pair(kind: usize) -> Result<[Spline; 2]> {
-    let through = |at: &dyn Fn(f64) -> DVec3| Spline::through(&(0..16).map(|k| at(f64::from(k) / 15.0)).collect::<Vec<_>>(), false);
+    let through = |at: &dyn Fn(f64) -> DVec3| {
+        Spline::through(&(0..16).map(|k| at(f64::from(k) / 15.0)).collect::<Vec<_>>(), false)
+    };
     Ok(match kind {
         0 => [
             through(&|s| DVec3::new(5.0 * s, 0.7 * (5.0 * s).sin(), 0.0))?,
@@ -128,7 +139,10 @@ fn planar_pair(kind: usize) -> Result<[Spline; 2]> {
         ],
         _ => {
             let arc = |radius: f64, s: f64| radius * DVec3::new((2.2 * s).cos(), (2.2 * s).sin(), 0.0);
-            [through(&|s| arc(3.2 + 0.25 * (7.0 * s).sin(), s))?, through(&|s| arc(1.7, 1.04 * s - 0.02) + 1.1 * DVec3::Z)?]
+            [
+                through(&|s| arc(3.2 + 0.25 * (7.0 * s).sin(), s))?,
+                through(&|s| arc(1.7, 1.04 * s - 0.02) + 1.1 * DVec3::Z)?,
+            ]
         }
     })
 }
@@ -137,16 +151,25 @@ pub fn figure24(folder: &Path) -> Result<Group> {
     let mut group = Group::new("Fig. 24: canal surfaces that fit two planar curves", "Three pairs, 49 circles each.");
     let mut views = Vec::new();
     let mut grids = Vec::new();
-    for (kind, angle, title, azimuth) in
-        [(0, -0.55, "both on the ground", -20.0), (1, -0.75, "on the ground and in an upright plane", -20.0), (2, -0.5, "in parallel planes", 200.0)]
-    {
+    for (kind, angle, title, azimuth) in [
+        (0, -0.55, "both on the ground", -20.0),
+        (1, -0.75, "on the ground and in an upright plane", -20.0),
+        (2, -0.5, "in parallel planes", 200.0),
+    ] {
         let [first, second] = planar_pair(kind)?;
-        let fit = fit_beyond(&first, &second, 49, angle)?;
+        let guide = Guide::along(&first, 49, Spacing::ArcLength)?;
+        let fit = fit_beyond(&guide, &NearestOnCurve::new(&second)?, 15, angle)?;
         curves_met(&mut group, &fit, &first, &second)?;
         let view = View::new(title, azimuth, 34.0).grid(&fit.grid, WHITE);
         let caption = format!("mesh off the red curve: {:.1e} of the diagonal", fit.deviation / fit.grid.diagonal());
-        views.push(view.line(&sampled(&first, 120), ORANGE, 3.4).line(&sampled(&second, 120), RED, 3.4).caption(caption));
-        group.at_most(&format!("{title}: mesh off the second curve / diagonal"), fit.deviation / fit.grid.diagonal(), 2e-3);
+        views.push(
+            view.line(&sampled(&first, 120), ORANGE, 3.4).line(&sampled(&second, 120), RED, 3.4).caption(caption),
+        );
+        group.at_most(
+            &format!("{title}: mesh off the second curve / diagonal"),
+            fit.deviation / fit.grid.diagonal(),
+            2e-3,
+        );
         grids.push(fit.grid);
     }
     exact(&mut group, &grids.iter().collect::<Vec<_>>());
@@ -161,13 +184,18 @@ pub fn figure24(folder: &Path) -> Result<Group> {
 }
 
 pub fn figure25(folder: &Path) -> Result<Group> {
-    let through = |at: &dyn Fn(f64) -> DVec3| Spline::through(&(0..24).map(|k| at(f64::from(k) / 23.0)).collect::<Vec<_>>(), false);
+    let through = |at: &dyn Fn(f64) -> DVec3| {
+        Spline::through(&(0..24).map(|k| at(f64::from(k) / 23.0)).collect::<Vec<_>>(), false)
+    };
     // A parabola, and a curve that comes near the centre of curvature at its vertex, (0, 0.8).
     let first = through(&|s| DVec3::new(4.0 * s - 2.0, 0.625 * (4.0 * s - 2.0).powi(2), 0.0))?;
     let second = through(&|s| DVec3::new(1.3 * (2.0 * s - 1.0), 0.72 + 2.0 * (2.0 * s - 1.0).powi(2), 0.55))?;
-    let fit = fit_beyond(&first, &second, 61, -0.5)?;
+    let fit = fit_beyond(&Guide::along(&first, 61, Spacing::ArcLength)?, &NearestOnCurve::new(&second)?, 17, -0.5)?;
     let folds = Folds::of(&fit.grid);
-    let mut group = Group::new("Fig. 25: lines of curvature concentrate near the evolute of the guide", "A parabola, and a second curve near the centre of curvature at its vertex; 61 circles.");
+    let mut group = Group::new(
+        "Fig. 25: lines of curvature concentrate near the evolute of the guide",
+        "A parabola, and a second curve near the centre of curvature at its vertex; 61 circles.",
+    );
     exact(&mut group, &[&fit.grid]);
     curves_met(&mut group, &fit, &first, &second)?;
     let reach = folds.evolute_ratios.iter().copied().fold(0.0, f64::max);
@@ -190,7 +218,11 @@ pub fn figure25(folder: &Path) -> Result<Group> {
         let view = View::new(title, 0.0, height).grid_of(&fit.grid, 1.0, &colour);
         view.line(&sampled(&first, 120), ORANGE, 3.4).line(&sampled(&second, 120), RED, 3.4)
     };
-    let plan = view("plan, with the evolute of the guide in blue", 90.0).line(&evolute.iter().map(|p| *p + 2.0 * DVec3::Z).collect::<Vec<_>>(), BLUE, 2.4);
+    let plan = view("plan, with the evolute of the guide in blue", 90.0).line(
+        &evolute.iter().map(|p| *p + 2.0 * DVec3::Z).collect::<Vec<_>>(),
+        BLUE,
+        2.4,
+    );
     let words = format!("{} of {} rows near the evolute", folds.rows_near_evolute.len(), fit.grid.rows());
     let scene = Scene {
         title: "Fig. 25: lines of curvature concentrate near the evolute".to_owned(),

@@ -28,7 +28,10 @@ pub fn figure3(folder: &Path) -> Result<Group> {
     let column = (0..8).map(|k| 1.0 + 0.5 * (0.9 * f64::from(k)).sin()).collect();
     surface.push(Transform::Combescure { column, row: vec![0.7, 0.8, 1.0, 1.2, 1.5, 1.8] })?;
     let (before, after) = (surface.base().grid(), surface.net().grid());
-    let mut group = Group::new("Fig. 3: a Combescure transformation by propagation", "Column 0 and row 0 have lengths of their own; all others follow, face by face.");
+    let mut group = Group::new(
+        "Fig. 3: a Combescure transformation by propagation",
+        "Column 0 and row 0 have lengths of their own; all others follow, face by face.",
+    );
     exact(&mut group, &[before, after]);
     group.at_most("largest sine of corresponding edges", check_parallel(before, after)?.largest_sine, 1e-12);
     let back = farthest(surface.restored()?.grid().points(), before.points()) / before.diagonal();
@@ -50,7 +53,10 @@ pub fn figure20(folder: &Path) -> Result<Group> {
     let (curve, p2, p3) = planar_curve(41);
     let found = m_revolution(&curve, p2, p3, Center::Middle, DVec3::Z, 25)?;
     let (grid, base) = (found.image.grid()?, &found.image.base.grid);
-    let mut group = Group::new("Fig. 20: an M-revolution surface from a planar curve and two points", "41 points of the curve, 25 of each arch.");
+    let mut group = Group::new(
+        "Fig. 20: an M-revolution surface from a planar curve and two points",
+        "41 points of the curve, 25 of each arch.",
+    );
     exact(&mut group, &[&grid, base]);
     met(&mut group, "the curve", farthest(&grid.column(0), &curve), &grid);
     let ends = grid.at(0, 24).distance(p2).max(grid.at(40, 24).distance(p3));
@@ -59,12 +65,14 @@ pub fn figure20(folder: &Path) -> Result<Group> {
     group.at_most("arches off vertical planes", upright.fold(0.0, f64::max), 1e-9);
     let corners = found.corners.points();
     let mut result = View::new("the surface", 12.0, 34.0).grid(&grid, WHITE).line(&curve, ORANGE, 3.6);
-    result = result.line(&grid.column(24), RED, 2.4).dots(&[p2, p3], BLUE, 5.0).dots(&[corners[0], corners[3]], ORANGE, 5.0);
+    result =
+        result.line(&grid.column(24), RED, 2.4).dots(&[p2, p3], BLUE, 5.0).dots(&[corners[0], corners[3]], ORANGE, 5.0);
     if let GeneralCircle::Circle(circle) = found.corners.circle_of_centers() {
         group.plain("radius of the circle of centres", circle.radius);
     }
     result = result.circle(&found.corners.circle(), INK, 1.0);
-    let start = View::new("its base, a surface of revolution", 12.0, 34.0).grid(base, WHITE).line(&base.column(0), ORANGE, 3.6);
+    let start =
+        View::new("its base, a surface of revolution", 12.0, 34.0).grid(base, WHITE).line(&base.column(0), ORANGE, 3.6);
     let scene = Scene {
         title: "Fig. 20: a surface from the inversion of a surface of revolution".to_owned(),
         subtitle: "Given: the planar curve (orange) and two points (blue) on a circle with its ends; the arches are vertical circles".to_owned(),
@@ -84,7 +92,10 @@ fn c_canal_of(section: &[DVec3], factor: impl Fn(f64) -> f64) -> Result<(CCanal,
 pub fn figure21(folder: &Path) -> Result<Group> {
     let section = ellipse(14, 0.62);
     let outputs = [c_canal_of(&section, |_| 1.0)?, c_canal_of(&section, |s| 1.0 - 0.45 * s * s)?];
-    let mut group = Group::new("Fig. 21: C-canal surfaces from a guide and a planar section", "Two sets of lengths across: constant, and shrinking; 24 sections of 14 edges.");
+    let mut group = Group::new(
+        "Fig. 21: C-canal surfaces from a guide and a planar section",
+        "Two sets of lengths across: constant, and shrinking; 24 sections of 14 edges.",
+    );
     let fine: Vec<Net> = outputs.iter().map(|(found, _)| Ok(found.surface.refined(2, 1)?)).collect::<Result<_>>()?;
     exact(&mut group, &[fine[0].grid(), fine[1].grid()]);
     let mut views = Vec::new();
@@ -109,11 +120,17 @@ pub fn figure21(folder: &Path) -> Result<Group> {
     group.at_most("sections off their planes / diagonal", off_plane / grid.diagonal(), 1e-10);
     group.at_most("lengths off those asked for / diagonal", off_length / grid.diagonal(), 1e-9);
     let base = outputs[0].0.surface.base().grid();
-    let start = View::new("the canal surface beneath the first", 40.0, 36.0).grid(base, WHITE).line(&base.column(0), ORANGE, 3.6);
+    let start = View::new("the canal surface beneath the first", 40.0, 36.0).grid(base, WHITE).line(
+        &base.column(0),
+        ORANGE,
+        3.6,
+    );
     views.insert(0, start.line(base.row(0), BLUE, 3.6));
     let scene = Scene {
         title: "Fig. 21: C-canal surfaces".to_owned(),
-        subtitle: "Orange: the guide curve; blue: the planar section; red: the far border, of which the distance is given".to_owned(),
+        subtitle:
+            "Orange: the guide curve; blue: the planar section; red: the far border, of which the distance is given"
+                .to_owned(),
         columns: 3,
         views,
     };
@@ -126,7 +143,10 @@ pub fn figure22(folder: &Path) -> Result<Group> {
     let grid = surface.net().grid();
     let center = grid.at(12, 3) + 2.4 * grid.diagonal() * DVec3::new(-0.3, 0.2, 0.5);
     surface.push(Transform::Inversion(Inversion::new(center, grid.diagonal().powi(2))?))?;
-    let mut group = Group::new("Fig. 22: remeshing of a super-canal surface", &format!("A {} surface of 24 × 6 faces; refined at its base, sent through its chain.", surface.family()));
+    let mut group = Group::new(
+        "Fig. 22: remeshing of a super-canal surface",
+        &format!("A {} surface of 24 × 6 faces; refined at its base, sent through its chain.", surface.family()),
+    );
     let coarse = surface.net().grid();
     let nets: Vec<Net> = [1, 2, 4].iter().map(|&pieces| Ok(surface.refined(pieces, pieces)?)).collect::<Result<_>>()?;
     exact(&mut group, &nets.iter().map(Net::grid).collect::<Vec<_>>());
@@ -142,7 +162,7 @@ pub fn figure22(folder: &Path) -> Result<Group> {
     let mut views = Vec::new();
     for (net, title) in nets.iter().zip(["24 × 6", "48 × 12", "96 × 24"]) {
         let grid = net.grid();
-        let view = View::new(title, 40.0, 40.0).grid(grid, WHITE);
+        let view = View::new(title, 215.0, 40.0).grid(grid, WHITE);
         views.push(view.line(&grid.column(0), ORANGE, 3.0).line(grid.row(0), BLUE, 3.0));
     }
     let scene = Scene {
@@ -172,7 +192,10 @@ pub fn figure23(folder: &Path) -> Result<Group> {
         .collect();
     let found = m_moulding(&curve, &rail, MouldingCenter::Corner { p3, center: Center::Angle(0.4) })?;
     let (grid, base) = (found.image.grid()?, &found.image.base.grid);
-    let mut group = Group::new("Fig. 23: an M-moulding surface through two curves", "A planar curve of 41 points, and one in space of 25.");
+    let mut group = Group::new(
+        "Fig. 23: an M-moulding surface through two curves",
+        "A planar curve of 41 points, and one in space of 25.",
+    );
     exact(&mut group, &[&grid, base]);
     met(&mut group, "the planar curve", farthest(&grid.column(0), &curve), &grid);
     met(&mut group, "the curve in space", farthest(grid.row(0), &rail), &grid);

@@ -5,40 +5,16 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use glam::DVec3;
-use shapeop::geometry::canal::circles::Section;
-use shapeop::geometry::canal::fit::{FitOptions, fit};
-use shapeop::geometry::canal::net::Net;
 use shapeop::geometry::canal::node_axes::NodeAxes;
-use shapeop::geometry::canal::normals::Orientation;
 use shapeop::geometry::canal::panels::{Panel, beams, offset, panels};
 use shapeop::geometry::canal::parallel::check_parallel;
 use shapeop::geometry::canal::quality::largest;
 use shapeop::mesh::Grid;
-use shapeop::mesh::curve::{Spacing, Spline};
 
 use super::exact;
 use crate::group::Group;
 use crate::scene::{INK, Scene, View, WOOD};
-
-/// A canal surface over two curves on the ground.
-fn shell(rows: usize, columns: usize) -> Result<Net> {
-    let through = |at: &dyn Fn(f64) -> DVec3| Spline::through(&(0..16).map(|k| at(f64::from(k) / 15.0)).collect::<Vec<_>>(), false);
-    let first = through(&|s| DVec3::new(6.0 * s, 0.8 * (4.6 * s).sin(), 0.0))?;
-    let second = through(&|s| DVec3::new(6.2 * s - 0.1, 2.6 + 0.5 * (3.0 * s + 0.4).cos(), 0.0))?;
-    let options = FitOptions {
-        circle_count: rows,
-        spacing: Spacing::ArcLength,
-        column_count: columns,
-        orientation: Orientation::Angle(1.05),
-        section: Section::ToCurve { is_long_way: false },
-    };
-    let mut fitted = fit(&first, &second, &options)?;
-    // The arch that rises.
-    if fitted.grid.at(rows / 2, columns / 2).z < 0.0 {
-        fitted = fit(&first, &second, &FitOptions { orientation: Orientation::Angle(-1.05), ..options })?;
-    }
-    Ok(Net::new(fitted.grid, fitted.frame)?)
-}
+use crate::shapes::shell;
 
 fn upward(axes: &[DVec3]) -> Vec<DVec3> {
     let is_down = axes.iter().map(|axis| axis.z).sum::<f64>() < 0.0;
@@ -52,7 +28,10 @@ pub fn figure16(folder: &Path) -> Result<Group> {
     let before = NodeAxes::of(grid, &normals)?;
     let after = NodeAxes::of_least_gaps(grid, &mut |_| ControlFlow::Continue(()))?;
     let height = 0.22;
-    let mut group = Group::new("Fig. 16: a pavilion of planar beams without torsion", "Node axes handed on by reflection; beams of constant height 0.22 on a surface 6 long.");
+    let mut group = Group::new(
+        "Fig. 16: a pavilion of planar beams without torsion",
+        "Node axes handed on by reflection; beams of constant height 0.22 on a surface 6 long.",
+    );
     exact(&mut group, &[grid]);
     let moved = offset(grid, &upward(&normals), height)?;
     group.at_most("offset along the normals: largest sine of edges", check_parallel(grid, &moved)?.largest_sine, 1e-10);
@@ -67,7 +46,8 @@ pub fn figure16(folder: &Path) -> Result<Group> {
     }
     group.at_most("beams off their planes / length", torsion, 1e-10);
     let (worst_before, worst_after) = (before.largest_gap(height), after.largest_gap(height));
-    let mean = |axes: &NodeAxes| (axes.gaps.iter().map(|gap| gap * gap).sum::<f64>() / axes.gaps.len() as f64).sqrt() * height;
+    let mean =
+        |axes: &NodeAxes| (axes.gaps.iter().map(|gap| gap * gap).sum::<f64>() / axes.gaps.len() as f64).sqrt() * height;
     group.plain("gaps at nodes / height, axes along normals: mean", mean(&before) / height);
     group.plain("largest", worst_before / height);
     group.plain("after optimisation: mean", mean(&after) / height);
@@ -81,7 +61,11 @@ pub fn figure16(folder: &Path) -> Result<Group> {
             let [a, b, c, d] = beam.corners;
             view = view.face(&[a, b, c, d], WOOD, 1.0);
         }
-        let words = format!("gaps at nodes: mean {:.2} %, largest {:.2} % of the height", 100.0 * mean(axes) / height, 100.0 * axes.largest_gap(height) / height);
+        let words = format!(
+            "gaps at nodes: mean {:.2} %, largest {:.2} % of the height",
+            100.0 * mean(axes) / height,
+            100.0 * axes.largest_gap(height) / height
+        );
         for (point, gap) in grid.points().iter().zip(&axes.gaps) {
             view = view.dots(&[*point], INK, 1.0 + 5.0 * gap / largest_gap);
         }
@@ -89,7 +73,9 @@ pub fn figure16(folder: &Path) -> Result<Group> {
     };
     let scene = Scene {
         title: "Fig. 16: a pavilion of beams with torsion-free nodes".to_owned(),
-        subtitle: "All beams are planar and of one height; a dot is as large as the gap of the beams' lower edges at its node".to_owned(),
+        subtitle:
+            "All beams are planar and of one height; a dot is as large as the gap of the beams' lower edges at its node"
+                .to_owned(),
         columns: 2,
         views: vec![view("node axes along the normals", &before)?, view("axes of least gaps", &after)?],
     };
@@ -102,7 +88,9 @@ fn plate(view: View, panel: &Panel, thickness: f64, apart: DVec3) -> Result<View
     let normal = panel.circle.context("three corners on a line")?.normal;
     let x = (panel.corners[1] - panel.corners[0]).normalize();
     let y = normal.cross(x);
-    let lower = panel.lower_outline(thickness)?.map(|flat| panel.corners[0] + flat.x * x + flat.y * y - thickness * normal + apart);
+    let lower = panel
+        .lower_outline(thickness)?
+        .map(|flat| panel.corners[0] + flat.x * x + flat.y * y - thickness * normal + apart);
     let upper = panel.corners.map(|corner| corner + apart);
     let view = (0..4).fold(view, |view, k| {
         let next = (k + 1) % 4;
@@ -117,11 +105,22 @@ pub fn figure17(folder: &Path) -> Result<Group> {
     let normals = upward(&net.frames().iter().map(|frame| frame.normal).collect::<Vec<_>>());
     let all = panels(grid, &normals)?;
     let thickness = 0.12;
-    let mut group = Group::new("Figs. 17 and 18: plates with mitre cuts", "12 × 7 plates of thickness 0.12; every cut contains the node axes at its ends.");
+    let mut group = Group::new(
+        "Figs. 17 and 18: plates with mitre cuts",
+        "12 × 7 plates of thickness 0.12; every cut contains the node axes at its ends.",
+    );
     exact(&mut group, &[grid]);
-    group.at_most("corners off their panel's plane / diagonal", all.iter().map(|panel| panel.height).fold(0.0, f64::max) / grid.diagonal(), 1e-10);
+    group.at_most(
+        "corners off their panel's plane / diagonal",
+        all.iter().map(|panel| panel.height).fold(0.0, f64::max) / grid.diagonal(),
+        1e-10,
+    );
     // Neighbours share the cut: their lower outlines end on one plane through the edge.
-    group.at_most("plates off the cut they share / thickness", shared_cuts(grid, &normals, &all, thickness)? / thickness, 1e-9);
+    group.at_most(
+        "plates off the cut they share / thickness",
+        shared_cuts(grid, &normals, &all, thickness)? / thickness,
+        1e-9,
+    );
     let angles = || all.iter().flat_map(|panel| panel.mitres_rad).map(f64::to_degrees);
     group.plain("least mitre, degrees", angles().fold(f64::INFINITY, f64::min));
     group.plain("greatest", angles().fold(f64::NEG_INFINITY, f64::max));
@@ -134,7 +133,8 @@ pub fn figure17(folder: &Path) -> Result<Group> {
     }
     let scene = Scene {
         title: "Figs. 17 and 18: a plated shell with planar mitre cuts".to_owned(),
-        subtitle: "Each plate is one flat quad; the cut along an edge contains the axes at both of its nodes".to_owned(),
+        subtitle: "Each plate is one flat quad; the cut along an edge contains the axes at both of its nodes"
+            .to_owned(),
         columns: 2,
         views: vec![built, exploded],
     };

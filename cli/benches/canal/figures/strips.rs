@@ -38,22 +38,31 @@ pub fn figure5(folder: &Path) -> Result<Group> {
     let frame = Frame::of_tangent_two(DVec3::Z, along.cross(DVec3::Z)).context("no frame")?;
     let fine = Net::new(strip.grid()?, frame)?.refined(4, 16)?;
     let grid = fine.grid();
-    let mut group = Group::new("Fig. 5: a canal surface from eight circles in a plane", "The half above the plane; 4 × 16 quads to each patch.");
+    let mut group = Group::new(
+        "Fig. 5: a canal surface from eight circles in a plane",
+        "The half above the plane; 4 × 16 quads to each patch.",
+    );
     exact(&mut group, &[grid]);
     let again = strip.circles()?;
     let off = circles.iter().zip(&again).map(|(a, b)| a.center.distance(b.center) + (a.radius - b.radius).abs());
     met(&mut group, "the circles drawn", off.fold(0.0, f64::max), grid);
-    group.at_least("lowest point / diagonal", grid.points().iter().map(|p| p.z).fold(0.0, f64::min) / grid.diagonal(), -1e-12);
+    group.at_least(
+        "lowest point / diagonal",
+        grid.points().iter().map(|p| p.z).fold(0.0, f64::min) / grid.diagonal(),
+        -1e-12,
+    );
     let half = (0..grid.rows()).map(|i| {
         let (first, middle, last) = (grid.at(i, 0), grid.at(i, 8), grid.at(i, 16));
-        Circle::through(first, middle, last).map_or(f64::INFINITY, |c| c.center.distance(0.5 * (first + last)) / c.radius)
+        Circle::through(first, middle, last)
+            .map_or(f64::INFINITY, |c| c.center.distance(0.5 * (first + last)) / c.radius)
     });
     group.at_most("sections off half circles / radius", half.fold(0.0, f64::max), 1e-9);
     let view = |title: &str| {
         let view = View::new(title, -18.0, 38.0).line(&strip.guide, ORANGE, 3.0).line(&strip.border, RED, 3.0);
         circles.iter().fold(view, |view, circle| view.circle(circle, BLUE, 1.6))
     };
-    let crossing = |view: View| strip.guide.iter().zip(&strip.border).fold(view, |view, (a, b)| view.line(&[*a, *b], BLUE, 0.9));
+    let crossing =
+        |view: View| strip.guide.iter().zip(&strip.border).fold(view, |view, (a, b)| view.line(&[*a, *b], BLUE, 0.9));
     let surface = View::new("the half above the plane", -18.0, 38.0).grid(grid, WHITE);
     let coarse = fine.grid();
     let surface = surface.line(&coarse.column(0), ORANGE, 3.0).line(&coarse.column(16), RED, 3.0);
@@ -74,7 +83,10 @@ pub fn figure7(folder: &Path) -> Result<Group> {
     let found = smooth(&input, &options, &mut |_| ControlFlow::Continue(()))?;
     let fine = |strip: &Strip, frame: Frame| Ok::<_, anyhow::Error>(Net::new(strip.grid()?, frame)?.refined(4, 12)?);
     let (before, after) = (fine(&strip, frame)?, fine(&found.strip, found.frame)?);
-    let mut group = Group::new("Fig. 7: smoothing of a strip of sixteen circles", "Sum of the squared curvatures of all edges' arcs, before and after; the guide stays on its curve.");
+    let mut group = Group::new(
+        "Fig. 7: smoothing of a strip of sixteen circles",
+        "Sum of the squared curvatures of all edges' arcs, before and after; the guide stays on its curve.",
+    );
     exact(&mut group, &[before.grid(), after.grid()]);
     let on_curve: Vec<DVec3> = found.parameters.iter().map(|&u| wave(u)).collect();
     met(&mut group, "the guide curve", farthest(&found.strip.guide, &on_curve), after.grid());
@@ -88,7 +100,8 @@ pub fn figure7(folder: &Path) -> Result<Group> {
     };
     let scene = Scene {
         title: "Fig. 7: smoothing a canal surface".to_owned(),
-        subtitle: "Orange: the guide curve, kept exactly; its points, the lengths across and the frame are free".to_owned(),
+        subtitle: "Orange: the guide curve, kept exactly; its points, the lengths across and the frame are free"
+            .to_owned(),
         columns: 2,
         views: vec![view("before", &before, &strip, found.before), view("after", &after, &found.strip, found.after)],
     };
@@ -129,12 +142,16 @@ pub fn figure15(folder: &Path) -> Result<Group> {
     let across = closed.border[0] - closed.guide[0];
     let tangent = DVec3::Y;
     // Sections that lean outwards at the ring.
-    let wish = Frame::of_tangent_one(tangent, tangent.cross(across).normalize() - 0.35 * DVec3::Z).context("no frame")?;
+    let wish =
+        Frame::of_tangent_one(tangent, tangent.cross(across).normalize() - 0.35 * DVec3::Z).context("no frame")?;
     let frame = closed_frame(&closed.guide, &wish)?;
     let net = Net::new(closed.grid()?, frame)?;
     let fine = net.refined(2, 14)?;
     let grid = fine.grid();
-    let mut group = Group::new("Fig. 15: a closed façade as a canal surface", "A closed strip of 48 quads over a ring, each patch 2 × 14; the mesh wraps.");
+    let mut group = Group::new(
+        "Fig. 15: a closed façade as a canal surface",
+        "A closed strip of 48 quads over a ring, each patch 2 × 14; the mesh wraps.",
+    );
     exact(&mut group, &[grid]);
     let guide: Vec<DVec3> = (0..48).map(|k| grid.at(2 * k, 0)).collect();
     met(&mut group, "the ring's points", farthest(&guide, &closed.guide), grid);
@@ -146,7 +163,8 @@ pub fn figure15(folder: &Path) -> Result<Group> {
     };
     let scene = Scene {
         title: "Fig. 15: a closed façade, covered with a circular mesh".to_owned(),
-        subtitle: "Orange: the ring it stands on; red: the upper border of the closed strip, on a sphere with the ring".to_owned(),
+        subtitle: "Orange: the ring it stands on; red: the upper border of the closed strip, on a sphere with the ring"
+            .to_owned(),
         columns: 2,
         views: vec![view("from the ground", 20.0, 16.0), view("from above", 20.0, 48.0)],
     };
