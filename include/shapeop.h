@@ -2,21 +2,27 @@
  *
  * Generated from the sources of the library: do not edit.
  *
- * Handles. A ShapeOpSolver* is a small integer (nonzero, below 2^31), not an address: never dereference it. A null
+ * Handles. A ShapeOpSolver* or ShapeOpCanal* is a small integer (nonzero, below 2^31), not an address: never dereference it. A null
  * handle, one that was deleted, and one that never was a solver's are recognised and refused. Only the low 32 bits
- * count.
+ * count. What is said of solvers below holds for surfaces (ShapeOpCanal*) too.
  *
- * Ownership. Every solver of shapeop_create belongs to the caller, who deletes it with shapeop_delete. Arrays belong
+ * Ownership. Every solver of shapeop_create belongs to the caller, who deletes it with shapeop_delete, and every surface,
+ * who deletes it with shapeop_canalDelete. Arrays belong
  * to the caller: the library copies what it reads and keeps no pointer. Texts belong to the library and are never
  * freed; how long they stay valid is said with each function.
  *
  * Arrays. Points are double[3 * n]: x y z of point 0, then of point 1, and so on. Lengths of points are counted in
  * points, all others in entries. An array of length 0 may be null. Results are written only if the call succeeds.
+ * Where a number of results is not known beforehand, the call takes a capacity and tells the count: a null array with
+ * capacity 0 only asks for it, and one that is too small is left as it is. Circles are double[7]: the center, the unit
+ * vector along the axis, the radius. Frames are read as double[6], the unit tangents t1 and t2, and written as
+ * double[9], with the normal t1 x t2. Grids are rows times columns points, row by row.
  *
  * Errors. A refused call changes nothing, and answers with an error code, with 1 (shapeop_init, shapeop_initDynamic,
- * shapeop_solve), with -1 (ids, counts, truths) or with null (shapeop_create, shapeop_constraintIndexName). In all
- * cases, functions without a result included, shapeop_lastError then says why and shapeop_lastErrorCode gives the
- * code; after a call that succeeded the text is empty and the code SO_SUCCESS. Numbers that are not finite are refused where they enter, and none is ever handed out.
+ * shapeop_solve), with -1 (ids, counts, truths) or with null (handles, texts). In all cases, functions without a result
+ * included, shapeop_lastError then says why and shapeop_lastErrorCode gives the code; after a call that succeeded the
+ * text is empty and the code SO_SUCCESS. Of calls on surfaces, and of those that take no handle, shapeop_lastError of
+ * null tells. Numbers that are not finite are refused where they enter, and none is ever handed out.
  *
  * Threads. Any thread may use any solver. A call on a solver that another call is using does not wait: it is refused
  * as busy. Different solvers can be used at the same time. From inside its own progress callback a solver can be read
@@ -50,6 +56,61 @@
  * A bit of the flags of `shapeop_addConstraints`: the constraints are hard.
  */
 #define SHAPEOP_HARD 1
+
+/**
+ * A bit of `wraps`: row 0 of a grid follows the last row.
+ */
+#define SHAPEOP_WRAPS_ROWS 1
+
+/**
+ * A bit of `wraps`: column 0 of a grid follows the last column.
+ */
+#define SHAPEOP_WRAPS_COLUMNS 2
+
+/**
+ * A bit of the flags of `shapeop_canalFolds`: the face is turned against most of its neighbours.
+ */
+#define SHAPEOP_FACE_FLIPPED 1
+
+/**
+ * A bit of the flags of `shapeop_canalFolds`: an edge of the face is shorter than a twentieth of the one opposite.
+ */
+#define SHAPEOP_FACE_SHRUNK 2
+
+/**
+ * A bit of the flags of `shapeop_canalStrip`: quads that cross themselves are refused.
+ */
+#define SHAPEOP_STRIP_STRICT 1
+
+/**
+ * A bit of the flags of `shapeop_canalStrip`: a length that is not attainable is replaced by the nearest that is.
+ */
+#define SHAPEOP_STRIP_PROJECT_LENGTHS 2
+
+/**
+ * A bit of the flags of `shapeop_canalStrip`: the first crossing edge is turned to where the lengths can go on.
+ */
+#define SHAPEOP_STRIP_FIT_START 4
+
+/**
+ * A bit of the flags of spheres: the sphere passes through an end of the second curve and is not tangent to it.
+ */
+#define SHAPEOP_SPHERE_END 1
+
+/**
+ * A bit of the flags of spheres: it touches the second curve on another branch than the sphere before.
+ */
+#define SHAPEOP_SPHERE_JUMP 2
+
+/**
+ * A bit of the flags of spheres: its center is on the other side of the first curve than that of the sphere before.
+ */
+#define SHAPEOP_SPHERE_SIGN_CHANGE 4
+
+/**
+ * A bit of the flags of spheres: another branch of the second curve is inside.
+ */
+#define SHAPEOP_SPHERE_PIERCED 8
 
 #if !defined(SHAPEOP_COMPAT_API_H)
 /**
@@ -223,6 +284,36 @@ typedef enum shapeop_linear_solver {
 } shapeop_linear_solver;
 
 /**
+ * Why smoothing stopped.
+ */
+typedef enum shapeop_canal_stop {
+    /**
+     * The gradient is as small as asked for.
+     */
+    SO_CANAL_STOP_GRADIENT = 0,
+    /**
+     * The value hardly falls any more.
+     */
+    SO_CANAL_STOP_DECREASE = 1,
+    /**
+     * All iterations were used.
+     */
+    SO_CANAL_STOP_ITERATIONS = 2,
+    /**
+     * No step lowers the value: it is as good as rounding allows, or at the border of what is feasible.
+     */
+    SO_CANAL_STOP_LINE_SEARCH = 3,
+    /**
+     * The callback said so.
+     */
+    SO_CANAL_STOP_CANCELLED = 4,
+    /**
+     * The start is not feasible.
+     */
+    SO_CANAL_STOP_INFEASIBLE = 5,
+} shapeop_canal_stop;
+
+/**
  * How iterations are accelerated: see `shapeop_setAcceleration`.
  */
 typedef enum shapeop_acceleration {
@@ -261,6 +352,124 @@ typedef enum shapeop_fairness {
      */
     SO_FAIRNESS_THIRD_DIFFERENCES = 2,
 } shapeop_fairness;
+
+/**
+ * What the base of a surface is; it decides on the name of its family only.
+ */
+typedef enum shapeop_canal_kind {
+    /**
+     * A canal surface: its sections are circles.
+     */
+    SO_CANAL_CANAL = 0,
+    /**
+     * A surface of revolution.
+     */
+    SO_CANAL_REVOLUTION = 1,
+    /**
+     * A moulding surface.
+     */
+    SO_CANAL_MOULDING = 2,
+    /**
+     * Any circular net.
+     */
+    SO_CANAL_CIRCULAR = 3,
+} shapeop_canal_kind;
+
+/**
+ * How points are spread over a curve.
+ */
+typedef enum shapeop_canal_spacing {
+    /**
+     * At equal lengths of the curve.
+     */
+    SO_CANAL_SPACING_ARC_LENGTH = 0,
+    /**
+     * At equal steps of its parameter, the length of chords along the given points.
+     */
+    SO_CANAL_SPACING_PARAMETER = 1,
+    /**
+     * The points that were given.
+     */
+    SO_CANAL_SPACING_POINTS = 2,
+} shapeop_canal_spacing;
+
+/**
+ * Which part of a circle is meshed, from a point of it on.
+ */
+typedef enum shapeop_canal_section {
+    /**
+     * All of it; the mesh closes around it.
+     */
+    SO_CANAL_SECTION_WHOLE = 0,
+    /**
+     * From the angle `from_angle` to `to_angle`, less than a full turn.
+     */
+    SO_CANAL_SECTION_ANGLES = 1,
+    /**
+     * From the point to the one nearest to where the second curve passes.
+     */
+    SO_CANAL_SECTION_TO_CURVE = 2,
+    /**
+     * What is above a plane.
+     */
+    SO_CANAL_SECTION_ABOVE = 3,
+} shapeop_canal_section;
+
+/**
+ * Which center of inversion an M-revolution surface takes: a point of the circle of centers, see `shapeop_canalCenters`.
+ */
+typedef enum shapeop_canal_center {
+    /**
+     * The middle of the outer arc of the circle of centers.
+     */
+    SO_CANAL_CENTER_MIDDLE = 0,
+    /**
+     * The point at the angle `center_value`, in radians, on the circle of centers: 0 is the middle of the inner arc, pi that of the
+     * outer one.
+     */
+    SO_CANAL_CENTER_ANGLE = 1,
+    /**
+     * The point inside the given circle for which the parallel sides have the ratio `center_value`.
+     */
+    SO_CANAL_CENTER_RATIO_INSIDE = 2,
+    /**
+     * The point outside the given circle for which the parallel sides have the ratio `center_value`.
+     */
+    SO_CANAL_CENTER_RATIO_OUTSIDE = 3,
+    /**
+     * The point `center_point`.
+     */
+    SO_CANAL_CENTER_POINT = 4,
+    /**
+     * On the chord from the rail's start to its end; for M-moulding surfaces.
+     */
+    SO_CANAL_CENTER_CHORD = 5,
+} shapeop_canal_center;
+
+/**
+ * What a transformation keeps.
+ */
+typedef enum shapeop_canal_step {
+    /**
+     * A similarity: the family.
+     */
+    SO_CANAL_STEP_SIMILARITY = 0,
+    /**
+     * An inversion: circles and angles.
+     */
+    SO_CANAL_STEP_MOEBIUS = 1,
+    /**
+     * A Combescure transformation: the directions of edges.
+     */
+    SO_CANAL_STEP_COMBESCURE = 2,
+} shapeop_canal_step;
+
+/**
+ * A super-canal surface: a circular net with a frame at each point, and the transformations that made it of its base.
+ * What points to it is no address but a small integer, a handle. All functions named `shapeop_canal...` leave their
+ * messages for `shapeop_lastError` of null.
+ */
+typedef struct ShapeOpCanal ShapeOpCanal;
 
 #if !defined(SHAPEOP_COMPAT_API_H)
 /**
@@ -629,6 +838,308 @@ typedef struct shapeop_recipe_options {
      */
     int anchor_corners;
 } shapeop_recipe_options;
+
+/**
+ * What `shapeop_canalSmooth` takes. Start from `shapeop_canalDefaultSmoothOptions`.
+ */
+typedef struct shapeop_canal_smooth_options {
+    /**
+     * In: `sizeof(shapeop_canal_smooth_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * The most iterations. Default 200.
+     */
+    unsigned int max_iterations;
+    /**
+     * 1: the normal stays on the cone of `cone_axis` and `cone_angle`. Default 0.
+     */
+    int has_cone;
+    /**
+     * 1: the tangents turn about the normal too. Default 0.
+     */
+    int turns_tangents;
+    /**
+     * The axis of the cone, x.
+     */
+    double cone_axis_x;
+    /**
+     * The axis of the cone, y.
+     */
+    double cone_axis_y;
+    /**
+     * The axis of the cone, z. Default 1.
+     */
+    double cone_axis_z;
+    /**
+     * The angle of the normal to the axis, in radians, 0 to pi. Default 0.
+     */
+    double cone_angle;
+    /**
+     * The most that two spacings of points change against each other, 1 (they stay) or more; may be infinite. Default 4.
+     */
+    double spacing_ratio;
+    /**
+     * The most that a length changes, as a part of its first value, above 0; may be infinite. Default 0.25.
+     */
+    double length_change;
+    /**
+     * The weight that keeps lengths as they are. Default 0.
+     */
+    double length_weight;
+    /**
+     * The largest angle, in radians, from an arc's tangent to its chord. Default three quarters of pi.
+     */
+    double half_angle;
+    /**
+     * Stop where the largest entry of the gradient is at most this part of the value. Default 1e-6.
+     */
+    double relative_gradient;
+    /**
+     * Stop where the value fell by less than this part in five iterations. Default 1e-4.
+     */
+    double relative_decrease;
+} shapeop_canal_smooth_options;
+
+/**
+ * What the progress callback of a call on surfaces is told.
+ */
+typedef struct shapeop_canal_progress {
+    /**
+     * `sizeof(shapeop_canal_progress)` in the library; fields may be added at the end.
+     */
+    unsigned int struct_size;
+    /**
+     * Iterations or steps made so far.
+     */
+    unsigned int iteration;
+    /**
+     * The part done, 0 to 1, of what may be needed.
+     */
+    double fraction;
+    /**
+     * What is being minimised, at the best so far; 0 where that is not known.
+     */
+    double value;
+} shapeop_canal_progress;
+
+/**
+ * Called after every iteration, on the thread that made the call. Returns 0 to go on; anything else ends the call, which succeeds
+ * with its best so far. It must return: no exception, no `longjmp`.
+ */
+typedef int (*shapeop_canal_progress_callback)(const struct shapeop_canal_progress *progress, void *user);
+
+/**
+ * What smoothing found.
+ */
+typedef struct shapeop_canal_smooth_report {
+    /**
+     * In: `sizeof(shapeop_canal_smooth_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Why it stopped.
+     */
+    enum shapeop_canal_stop stop;
+    /**
+     * The functional at the start, the sum of squared curvatures, in one over squared model units.
+     */
+    double before;
+    /**
+     * At the end.
+     */
+    double after;
+    /**
+     * Iterations made.
+     */
+    unsigned int iterations;
+    /**
+     * 0; a gap that keeps the size a multiple of 8.
+     */
+    unsigned int reserved;
+} shapeop_canal_smooth_report;
+
+/**
+ * What `shapeop_canalFit` and `shapeop_canalSectionPoints` take. Start from `shapeop_canalDefaultFitOptions`.
+ */
+typedef struct shapeop_canal_fit_options {
+    /**
+     * In: `sizeof(shapeop_canal_fit_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * How many circles, one through each of as many points of the first curve; at least 2, 3 on a closed curve. Default 16.
+     */
+    int circle_count;
+    /**
+     * How many points of each circle; at least 2, 3 of whole circles. Default 12.
+     */
+    int column_count;
+    /**
+     * A `shapeop_canal_spacing`. Default 0; with `SO_CANAL_SPACING_POINTS` the number of circles is that of the points.
+     */
+    int spacing;
+    /**
+     * A `shapeop_canal_section`. Default 0.
+     */
+    int section;
+    /**
+     * For `SO_CANAL_SECTION_TO_CURVE`, 1: around the far side of the circle. Default 0.
+     */
+    int is_long_way;
+    /**
+     * 1: the first normal is as near as possible to `normal_x`, `normal_y`, `normal_z`; 0, the default: it is at the angle `angle`.
+     */
+    int has_normal;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    int reserved;
+    /**
+     * The angle, in radians, about the first tangent from the direction of z orthogonal to it (of x where it is along z). Default 0.
+     */
+    double angle;
+    /**
+     * The first normal, x.
+     */
+    double normal_x;
+    /**
+     * The first normal, y.
+     */
+    double normal_y;
+    /**
+     * The first normal, z.
+     */
+    double normal_z;
+    /**
+     * Where `SO_CANAL_SECTION_ANGLES` starts, in radians from the point of the first curve. Default 0.
+     */
+    double from_angle;
+    /**
+     * Where it ends, on either side of the start. Default pi.
+     */
+    double to_angle;
+    /**
+     * A point of the plane of `SO_CANAL_SECTION_ABOVE`, x.
+     */
+    double plane_x;
+    /**
+     * A point of the plane, y.
+     */
+    double plane_y;
+    /**
+     * A point of the plane, z.
+     */
+    double plane_z;
+    /**
+     * The plane's normal, of any length, x.
+     */
+    double up_x;
+    /**
+     * The plane's normal, y.
+     */
+    double up_y;
+    /**
+     * The plane's normal, z. Default 1.
+     */
+    double up_z;
+} shapeop_canal_fit_options;
+
+/**
+ * What `shapeop_canalFit` found.
+ */
+typedef struct shapeop_canal_fit_report {
+    /**
+     * In: `sizeof(shapeop_canal_fit_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Whether the normal points away from the centers of the spheres.
+     */
+    int is_outward;
+    /**
+     * The largest distance of the second curve from a circle where it crosses the circle's plane.
+     */
+    double deviation;
+    /**
+     * The sum of the squared differences of the radii of spheres and their distances to the second curve.
+     */
+    double residual;
+    /**
+     * The largest difference of the surface's tangents from the first curve's.
+     */
+    double tangent_gap;
+    /**
+     * Of a closed first curve, how far the last frame is from the first after one turn; 0 of an open one.
+     */
+    double closing_gap;
+} shapeop_canal_fit_report;
+
+/**
+ * What is true of a surface's net, see `shapeop_canalProperties`.
+ */
+typedef struct shapeop_canal_properties {
+    /**
+     * In: `sizeof(shapeop_canal_properties)`.
+     */
+    unsigned int struct_size;
+    /**
+     * The number of faces.
+     */
+    unsigned int face_count;
+    /**
+     * The number of faces that cross themselves.
+     */
+    unsigned int crossed_count;
+    /**
+     * Faces turned against most of their neighbours.
+     */
+    unsigned int flipped_count;
+    /**
+     * Faces of which an edge is shorter than a twentieth of the one opposite.
+     */
+    unsigned int shrunk_count;
+    /**
+     * 1 if one family of lines of curvature is planar.
+     */
+    int has_planar_curves;
+    /**
+     * 1 if the surface is isothermic by construction: one of revolution, or an inversion of one.
+     */
+    int is_isothermic_by_construction;
+    /**
+     * Whether lines of curvature can be lines of principal stress: 1, 0, or -1 where that could not be measured.
+     */
+    int has_stress_lines;
+    /**
+     * The largest planarity residual of a face.
+     */
+    double planarity;
+    /**
+     * The largest concyclicity residual of a face.
+     */
+    double concyclicity;
+    /**
+     * The largest distance of a row's point from its best-fit plane, over the row's extent.
+     */
+    double rows_off_plane;
+    /**
+     * The same of columns.
+     */
+    double columns_off_plane;
+    /**
+     * How far cross-ratios are from those of an isothermic net; 0 there.
+     */
+    double cross_ratio_residual;
+    /**
+     * The residual of the membrane under pressure on a refined net, 0 to 1; 0 where it could not be measured.
+     */
+    double stress_residual_coarse;
+    /**
+     * The same on a net refined more.
+     */
+    double stress_residual_fine;
+} shapeop_canal_properties;
 
 #ifdef __cplusplus
 extern "C" {
@@ -1290,6 +1801,1360 @@ SHAPEOP_API int shapeop_measureCount(void);
  * The name of the measure `index`; null if there is none. Valid as long as the library is loaded.
  */
 SHAPEOP_API const char *shapeop_measureName(int index);
+
+/**
+ * Creates a surface of a circular net: `rows` times `columns` points, row by row; `wraps` says which directions close.
+ * `frame` is that at point (0, 0): the unit tangents `t1`, from row to row, and `t2`, from column to column, orthogonal;
+ * the normal is their cross product. `kind` is a `shapeop_canal_kind`. Null if it is refused, as a net is whose quads
+ * have no circles. Delete it with `shapeop_canalDelete`.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * rows * columns` doubles, `frame` for 6.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalCreate(const double *points,
+                                         int rows,
+                                         int columns,
+                                         int wraps,
+                                         const double *frame,
+                                         int kind);
+
+/**
+ * Creates the surface that a text in JSON states (`docs/canal.schema.json`). Null if it is refused; the message names
+ * the place in the text.
+ *
+ * # Safety
+ * `json` is null or ends with a zero.
+ */
+SHAPEOP_API struct ShapeOpCanal *shapeop_canalFromJson(const char *json);
+
+/**
+ * Creates a copy of a surface; null if it is refused.
+ */
+SHAPEOP_API struct ShapeOpCanal *shapeop_canalCopy(struct ShapeOpCanal *surface);
+
+/**
+ * Deletes a surface. Null does nothing; a busy surface is left alone, as is whatever is no surface.
+ */
+SHAPEOP_API void shapeop_canalDelete(struct ShapeOpCanal *surface);
+
+/**
+ * The JSON form of a surface, its base and its chain of transformations; null if it is refused. The text is the calling
+ * thread's own, valid until that thread's next call of a `shapeop_canal...` function that answers with a text.
+ */
+SHAPEOP_API const char *shapeop_canalText(struct ShapeOpCanal *surface);
+
+/**
+ * The name of a surface's family, such as `MC-canal`: `M` for an inversion, `C` for a Combescure transformation, the
+ * last one first; null if it is refused. It is valid as long as that of `shapeop_canalText`.
+ */
+SHAPEOP_API const char *shapeop_canalFamily(struct ShapeOpCanal *surface);
+
+/**
+ * The kind of a surface's base, a `shapeop_canal_kind`, or -1.
+ */
+SHAPEOP_API int shapeop_canalKind(struct ShapeOpCanal *surface);
+
+/**
+ * The number of transformations in a surface's chain, or -1.
+ */
+SHAPEOP_API int shapeop_canalChainCount(struct ShapeOpCanal *surface);
+
+/**
+ * Writes the size of a surface's net: `rows`, `columns` and `wraps`, bits as in `shapeop_canalCreate`. Each may be null.
+ *
+ * # Safety
+ * Each is null or writable for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalSize(struct ShapeOpCanal *surface,
+                                   int *rows,
+                                   int *columns,
+                                   int *wraps);
+
+/**
+ * Writes the points of a surface's net, row by row, if there is room for `capacity` points, and their number to `count`.
+ * With null and 0 it only tells the number.
+ *
+ * # Safety
+ * `points` is null or writable for `3 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalPoints(struct ShapeOpCanal *surface,
+                                     double *points,
+                                     int capacity,
+                                     int *count);
+
+/**
+ * As `shapeop_canalPoints`, for the frames at the points: each the unit vectors `t1`, `t2` and the normal, 9 doubles.
+ *
+ * # Safety
+ * `frames` is null or writable for `9 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalFrames(struct ShapeOpCanal *surface,
+                                     double *frames,
+                                     int capacity,
+                                     int *count);
+
+/**
+ * As `shapeop_canalPoints`, for the net of the base.
+ *
+ * # Safety
+ * `points` is null or writable for `3 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalBasePoints(struct ShapeOpCanal *surface,
+                                         double *points,
+                                         int capacity,
+                                         int *count);
+
+/**
+ * As `shapeop_canalPoints`, for the base that the inverse chain makes of the net: what differs from
+ * `shapeop_canalBasePoints` is round-off.
+ *
+ * # Safety
+ * `points` is null or writable for `3 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalRestoredPoints(struct ShapeOpCanal *surface,
+                                             double *points,
+                                             int capacity,
+                                             int *count);
+
+/**
+ * Inverts a surface: a point at the vector `q` from `center` goes to `ratio * q / |q|^2`; `ratio` is in squared model units
+ * and not 0. The surface becomes M of what it was.
+ *
+ * # Safety
+ * `center` is null or readable for 3 doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalInvert(struct ShapeOpCanal *surface,
+                                     const double *center,
+                                     double ratio);
+
+/**
+ * Moves a surface by a vector.
+ *
+ * # Safety
+ * `vector` is null or readable for 3 doubles.
+ */
+SHAPEOP_API enum shapeop_err shapeop_canalTranslate(struct ShapeOpCanal *surface, const double *vector);
+
+/**
+ * Scales a surface about the origin by a factor that is not 0.
+ */
+SHAPEOP_API enum shapeop_err shapeop_canalScale(struct ShapeOpCanal *surface, double factor);
+
+/**
+ * Turns a surface about the axis through the origin along `axis`, of any length but 0, by `angle` radians, right-handed.
+ *
+ * # Safety
+ * `axis` is null or readable for 3 doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalRotate(struct ShapeOpCanal *surface,
+                                     const double *axis,
+                                     double angle);
+
+/**
+ * The Combescure transformation of a surface: the parallel net whose edges along column 0 (from row to row) and along row 0
+ * are these multiples, none 0, of what they were. One factor for each edge. Lengths of a direction that wraps must close it
+ * (`shapeop_canalCloseLengths`).
+ *
+ * # Safety
+ * Each array is null or readable for its number of doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCombescureFactors(struct ShapeOpCanal *surface,
+                                                const double *column,
+                                                int nb_column,
+                                                const double *row,
+                                                int nb_row);
+
+/**
+ * Takes the last transformation off: 1, 0 if there is none, or -1.
+ */
+SHAPEOP_API int shapeop_canalUndo(struct ShapeOpCanal *surface);
+
+/**
+ * Creates the surface that `surface` is when every face is cut into `one` by `two` pieces along lines of curvature, without a
+ * chain: the base is refined and transformed, so that old points stay. Null if it is refused.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalRefined(struct ShapeOpCanal *surface,
+                                          int one,
+                                          int two);
+
+/**
+ * As `shapeop_canalRefined`, with every face cut at the given fractions of the arcs of column 0 (`one`) and row 0 (`two`),
+ * ascending between 0 and 1; the net itself is cut, not its base.
+ *
+ * # Safety
+ * Each array is null or readable for its number of doubles.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalRefinedAt(struct ShapeOpCanal *surface,
+                                            const double *one,
+                                            int nb_one,
+                                            const double *two,
+                                            int nb_two);
+
+/**
+ * Writes the point and the frame (9 doubles; each output may be null) of the patch over face `(i, j)` at the fractions `u` and
+ * `v`, 0 to 1, of its arcs from row to row and from column to column.
+ *
+ * # Safety
+ * `point` is null or writable for 3 doubles, `frame` for 9.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalEvaluate(struct ShapeOpCanal *surface,
+                                       int i,
+                                       int j,
+                                       double u,
+                                       double v,
+                                       double *point,
+                                       double *frame);
+
+/**
+ * Writes how far the frames come back from themselves across the seams of a surface that wraps, as a difference of unit
+ * vectors: 0 where the surface is smooth there, or does not wrap.
+ *
+ * # Safety
+ * `gap` is null or writable for one double.
+ */
+SHAPEOP_API enum shapeop_err shapeop_canalClosingGap(struct ShapeOpCanal *surface, double *gap);
+
+/**
+ * Writes how near any forces along the lines of curvature come to equilibrium under a pressure along the normals: 0, the lines
+ * can be lines of principal stress; 1, no force carries anything.
+ *
+ * # Safety
+ * `residual` is null or writable for one double.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalMembraneResidual(struct ShapeOpCanal *surface,
+                                               double *residual);
+
+/**
+ * As `shapeop_canalMembraneResidual`, for given forces per length in both directions, one per face, above 0 for tension under
+ * `pressure` along the normal, which is not 0.
+ *
+ * # Safety
+ * The forces are null or readable for `nb_faces` doubles, `residual` is null or writable for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalMembraneResidualOf(struct ShapeOpCanal *surface,
+                                                 double pressure,
+                                                 const double *forces_one,
+                                                 const double *forces_two,
+                                                 int nb_faces,
+                                                 double *residual);
+
+/**
+ * Measures how circular quads are; `quads` has 4 point indices for each. Each output may be null: `planarity` is the distance of
+ * a quad's diagonals over its mean edge, `concyclicity` that of a corner from the circle through the other three over its radius,
+ * `is_in_order` whether the corners follow each other around it, so that the quad does not cross itself.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; each output is null or writable for
+ * `nb_quads` values.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCheckCircular(const double *points,
+                                            int nb_points,
+                                            const int *quads,
+                                            int nb_quads,
+                                            double *planarity,
+                                            double *concyclicity,
+                                            int *is_in_order);
+
+/**
+ * Compares the edges of two meshes with the same points, pairs of point indices: writes the largest sine of the angle between an
+ * edge and its counterpart, and how many point the other way. Each output may be null.
+ *
+ * # Safety
+ * `a` and `b` are null or readable for `3 * nb_points` doubles, `edges` for `2 * nb_edges` ints; each output is null or writable
+ * for one value.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCheckParallel(const double *a,
+                                            const double *b,
+                                            int nb_points,
+                                            const int *edges,
+                                            int nb_edges,
+                                            double *largest_sine,
+                                            int *reversed_count);
+
+/**
+ * Writes the lengths of a grid's edges along column 0, from row to row, and along row 0: one fewer than points there, as many
+ * where the direction wraps. `rows` times `columns` points, row by row; `wraps`: `SHAPEOP_WRAPS_ROWS`, `SHAPEOP_WRAPS_COLUMNS`.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * rows * columns` doubles; `column` and `row` are null or writable for the lengths.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalGridLengths(const double *points,
+                                          int rows,
+                                          int columns,
+                                          int wraps,
+                                          double *column,
+                                          double *row);
+
+/**
+ * Writes the lengths for `shapeop_canalCombescure` along two polylines that replace column 0 and row 0 and whose edges are
+ * parallel to theirs; below 0 where they point the other way. A polyline has one point more than edges.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * rows * columns` doubles, each polyline for 3 times its number of points; `column` and
+ * `row` are null or writable for one double per edge.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalPolylineLengths(const double *points,
+                                              int rows,
+                                              int columns,
+                                              int wraps,
+                                              const double *column_points,
+                                              int nb_column_points,
+                                              const double *row_points,
+                                              int nb_row_points,
+                                              double *column,
+                                              double *row);
+
+/**
+ * Writes the lengths nearest to the given ones, by least squares, with which a grid that wraps closes.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * rows * columns` doubles; `column` and `out_column` are null or readable and writable for
+ * `nb_column` doubles, `row` and `out_row` for `nb_row`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCloseLengths(const double *points,
+                                           int rows,
+                                           int columns,
+                                           int wraps,
+                                           const double *column,
+                                           int nb_column,
+                                           const double *row,
+                                           int nb_row,
+                                           double *out_column,
+                                           double *out_row);
+
+/**
+ * Writes the grid parallel to a circular one whose edges along column 0 and row 0 have given lengths, in model units, below 0
+ * where they point the other way; it is circular again. `origin` is its point (0, 0), that of the grid itself if null;
+ * `reversed_count`, which may be null, the number of edges that point the other way.
+ *
+ * # Safety
+ * `points` is null or readable, `out` null or writable, for `3 * rows * columns` doubles; `column` and `row` are null or readable
+ * for their numbers of doubles, `origin` for 3; `reversed_count` is null or writable for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCombescure(const double *points,
+                                         int rows,
+                                         int columns,
+                                         int wraps,
+                                         const double *column,
+                                         int nb_column,
+                                         const double *row,
+                                         int nb_row,
+                                         const double *origin,
+                                         double *out,
+                                         int *reversed_count);
+
+/**
+ * Computes an orthonormal basis of the space of all meshes parallel to a mesh of quads, at most 1000 points, each of them in a
+ * face: `dimension` vectors, each `x0 y0 z0 x1 ...`. They are written behind each other if `capacity`, counted in vectors,
+ * suffices; with null and 0 only the dimension is told.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; `basis` is null or writable for
+ * `3 * nb_points * capacity` doubles, `dimension` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalParallelSpace(const double *points,
+                                            int nb_points,
+                                            const int *quads,
+                                            int nb_quads,
+                                            double *basis,
+                                            int capacity,
+                                            int *dimension);
+
+/**
+ * Writes, of all meshes parallel to a mesh of quads, the one whose points `handles` are nearest to `targets` by the sum of squares;
+ * among equally near ones that nearest to the mesh itself. The mesh is as for `shapeop_canalParallelSpace`.
+ *
+ * # Safety
+ * `points` is null or readable, `out` null or writable, for `3 * nb_points` doubles; `quads` is null or readable for
+ * `4 * nb_quads` ints, `handles` for `nb_handles` ints, `targets` for `3 * nb_handles` doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalNearestParallel(const double *points,
+                                              int nb_points,
+                                              const int *quads,
+                                              int nb_quads,
+                                              const int *handles,
+                                              const double *targets,
+                                              int nb_handles,
+                                              double *out);
+
+/**
+ * Sorts a mesh of quads into grids: `grid_count` is the number of its components, and `rows`, `columns` and `wraps` are those of
+ * component `component`. Its point (i, j) is point `indices[i * columns + j]` of the mesh; they are written if there is room for
+ * `capacity` of them, and `count` is their number. The other outputs may be null.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; `indices` is null or writable for
+ * `capacity` ints, all other outputs for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalGridOfMesh(const double *points,
+                                         int nb_points,
+                                         const int *quads,
+                                         int nb_quads,
+                                         int component,
+                                         int *grid_count,
+                                         int *rows,
+                                         int *columns,
+                                         int *wraps,
+                                         int *indices,
+                                         int capacity,
+                                         int *count);
+
+/**
+ * Writes the frame (9 doubles: the unit vectors `t1`, `t2` and the normal `t1 x t2`) whose normal has the spherical coordinates
+ * `theta`, from +z, and `lambda`, from +x about +z, turned about it by `psi`, all in radians.
+ *
+ * # Safety
+ * `out` is null or writable for 9 doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalFrameOfAngles(double lambda,
+                                            double theta,
+                                            double psi,
+                                            double *out);
+
+/**
+ * Writes the frame that has the tangent `tangent`, of any length but 0, in `direction` 1 (from row to row) or 2 (from column to
+ * column), and whose normal is as near as possible to `normal`.
+ *
+ * # Safety
+ * `tangent` and `normal` are null or readable for 3 doubles; `out` is null or writable for 9.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalFrameOfTangent(const double *tangent,
+                                             const double *normal,
+                                             int direction,
+                                             double *out);
+
+/**
+ * Writes the frame at the other end of an edge in `direction` 1 or 2: the mirror image in the plane that bisects it, with the
+ * tangent of that direction turned round. `frame` has the unit vectors `t1` and `t2`, 6 doubles; `out` has 9.
+ *
+ * # Safety
+ * `frame` is null or readable for 6 doubles, `edge` for 3; `out` is null or writable for 9.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalFrameAcross(const double *frame,
+                                          const double *edge,
+                                          int direction,
+                                          double *out);
+
+/**
+ * Writes the frames at all points of a circular grid, 9 doubles each, from that at point (0, 0): `frame`, the unit vectors `t1` and
+ * `t2`. `closing_gap`, which may be null, is that of `shapeop_canalClosingGap`.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * rows * columns` doubles, `frame` for 6; `out` is null or writable for
+ * `9 * rows * columns` doubles, `closing_gap` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalGridFrames(const double *points,
+                                         int rows,
+                                         int columns,
+                                         int wraps,
+                                         const double *frame,
+                                         double *out,
+                                         double *closing_gap);
+
+/**
+ * Looks for folds of a grid whose column 0 is the guide. Each output may be null: per row `evolute_ratios`, how far its section
+ * reaches towards the evolute of the guide (1: up to it; 0 where the guide is straight) and `is_near_evolute` (from 0.8 on); per
+ * face `edge_ratios`, the least ratio of opposite edges, and `face_flags`, bits `SHAPEOP_FACE_...`.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * rows * columns` doubles; each output is null or writable for one value per row or face.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalFolds(const double *points,
+                                    int rows,
+                                    int columns,
+                                    int wraps,
+                                    double *evolute_ratios,
+                                    int *is_near_evolute,
+                                    double *edge_ratios,
+                                    int *face_flags);
+
+/**
+ * Writes the images of points under the inversion at `center`: a point at the vector `q` from there goes to
+ * `ratio * q / |q|^2`. `ratio` is in squared model units and not 0; below 0 it mirrors in the center too.
+ *
+ * # Safety
+ * `points` is null or readable, `out` null or writable, for `3 * nb_points` doubles; `center` is readable for 3.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalInvertPoints(const double *points,
+                                           int nb_points,
+                                           const double *center,
+                                           double ratio,
+                                           double *out);
+
+/**
+ * The same in the complex plane: `points` and `out` have 2 doubles for each point, its real and its imaginary part.
+ *
+ * # Safety
+ * `points` is null or readable, `out` null or writable, for `2 * nb_points` doubles; `center` is readable for 2.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalInvertComplex(const double *points,
+                                            int nb_points,
+                                            const double *center,
+                                            double ratio,
+                                            double *out);
+
+/**
+ * Writes the image of a circle: its center, the unit vector along its axis and its radius, 7 doubles, as it is given. A circle
+ * through the center of inversion goes to a line: `is_line` then is 1, and `out` a point of it, a unit vector along it, and 0.
+ *
+ * # Safety
+ * `circle` is null or readable for 7 doubles, `center` for 3; `out` is null or writable for 7 doubles, `is_line` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalInvertCircle(const double *circle,
+                                           const double *center,
+                                           double ratio,
+                                           double *out,
+                                           int *is_line);
+
+/**
+ * Writes the image of a sphere. Either `is_plane` is 0 and `out` has a sphere: its center, three zeros, and its radius. Or, for a
+ * sphere through the center of inversion, it is 1 and `out` has a plane: a point, the unit normal, and 0.
+ *
+ * # Safety
+ * `sphere_center` and `center` are null or readable for 3 doubles; `out` is null or writable for 7, `is_plane` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalInvertSphere(const double *sphere_center,
+                                           double radius,
+                                           const double *center,
+                                           double ratio,
+                                           double *out,
+                                           int *is_plane);
+
+/**
+ * As `shapeop_canalInvertSphere`, for the plane through a point with a normal of any length but 0.
+ *
+ * # Safety
+ * `point`, `normal` and `center` are null or readable for 3 doubles; `out` is null or writable for 7, `is_plane` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalInvertPlane(const double *point,
+                                          const double *normal,
+                                          const double *center,
+                                          double ratio,
+                                          double *out,
+                                          int *is_plane);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_canalDefaultSmoothOptions(struct shapeop_canal_smooth_options *options);
+
+/**
+ * Smooths a strip with a frame at its first point (`frame`: the unit tangents `t1`, near the guide's, and `t2`): lowers the sum of
+ * the squared curvatures of the arcs over all edges by moving the guide's points along their curve, the cubic spline through
+ * them, and by changing lengths and frame. The guide's ends and the direction of the first crossing edge stay.
+ *
+ * `options` is null for the defaults. `progress` may be null. Outputs: the guide and the border, `nb_points` points each, where each
+ * guide point is on the curve (`parameters`, in lengths of chords along the given points) and the frame, 9 doubles; the last two may
+ * be null. `report` is null, or its `struct_size` is set. Of `history`, the functional at the start and after every iteration, as
+ * many entries are written as there are if there is room for `capacity`; `count` is their number. All three are null, 0 and
+ * null to leave it out.
+ *
+ * # Safety
+ * `guide` and `border` are null or readable, `out_guide` and `out_border` null or writable, for `3 * nb_points` doubles; `frame` is
+ * readable for 6. `parameters` is null or writable for `nb_points` doubles, `out_frame` for 9, `history` for `capacity`, `count`
+ * for one int. `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many
+ * bytes. `progress` is null or a function of that signature.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalSmooth(const double *guide,
+                                     const double *border,
+                                     int nb_points,
+                                     const double *frame,
+                                     const struct shapeop_canal_smooth_options *options,
+                                     shapeop_canal_progress_callback progress,
+                                     void *user,
+                                     double *out_guide,
+                                     double *out_border,
+                                     double *parameters,
+                                     double *out_frame,
+                                     double *history,
+                                     int capacity,
+                                     int *count,
+                                     struct shapeop_canal_smooth_report *report);
+
+/**
+ * Writes what `shapeop_canalSmooth` minimises, for a strip with a frame at its first point.
+ *
+ * # Safety
+ * `guide` and `border` are null or readable for `3 * nb_points` doubles, `frame` for 6; `out` is null or writable for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalStripEnergy(const double *guide,
+                                          const double *border,
+                                          int nb_points,
+                                          const double *frame,
+                                          double *out);
+
+/**
+ * Writes the border of the strip of circular quads along `points` that begins at `start` and whose crossing edges have the given
+ * lengths, in model units, one for each point. Not every sequence of lengths is attainable: `flags` has bits
+ * `SHAPEOP_STRIP_...`; without them a refusal says what is attainable, and the message has the quad.
+ *
+ * All outputs but `border` may be null: the lengths that were made, the largest attainable length at the end of each quad,
+ * whether each quad crosses itself, whether each length was replaced, and the largest difference of a length from that asked for.
+ *
+ * # Safety
+ * `points` is null or readable, `border` null or writable, for `3 * nb_points` doubles; `start` is readable for 3. `lengths`,
+ * `out_lengths` and `is_projected` have `nb_points` values, `attainable` and `is_flipped` one fewer, `deviation` one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalStrip(const double *points,
+                                    int nb_points,
+                                    const double *start,
+                                    const double *lengths,
+                                    unsigned int flags,
+                                    double *border,
+                                    double *out_lengths,
+                                    double *attainable,
+                                    int *is_flipped,
+                                    int *is_projected,
+                                    double *deviation);
+
+/**
+ * As `shapeop_canalStrip`, from the radius of each quad's circle, one fewer than points. `start` says in which direction the first
+ * crossing edge goes. With `flags` `SHAPEOP_STRIP_STRICT` quads that cross themselves are refused.
+ *
+ * # Safety
+ * As `shapeop_canalStrip`; `radii` is null or readable for `nb_points - 1` doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalStripOfRadii(const double *points,
+                                           int nb_points,
+                                           const double *start,
+                                           const double *radii,
+                                           unsigned int flags,
+                                           double *border,
+                                           double *out_lengths,
+                                           int *is_flipped);
+
+/**
+ * As `shapeop_canalStrip`, from the lengths of the border's edges, one fewer than points. They are attainable from any angle.
+ *
+ * # Safety
+ * As `shapeop_canalStrip`; `edges` is null or readable for `nb_points - 1` doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalStripOfBorderEdges(const double *points,
+                                                 int nb_points,
+                                                 const double *start,
+                                                 const double *edges,
+                                                 double *border,
+                                                 double *out_lengths,
+                                                 int *is_flipped);
+
+/**
+ * Writes lengths of crossing edges, one for each point, that go from `first` to `last` evenly along the polyline.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles, `out` is null or writable for `nb_points`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalLengthsBetween(const double *points,
+                                             int nb_points,
+                                             double first,
+                                             double last,
+                                             double *out);
+
+/**
+ * Writes the lengths of the edges of a border that is `length` long in all, one fewer than points, each in the proportion of the
+ * guide's edge.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles, `out` is null or writable for `nb_points - 1`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalEdgesOfBorder(const double *points,
+                                            int nb_points,
+                                            double length,
+                                            double *out);
+
+/**
+ * Writes the circle of each quad of a strip: its center, the unit vector along its axis and its radius, 7 doubles; one fewer than
+ * points on either side.
+ *
+ * # Safety
+ * `guide` and `border` are null or readable for `3 * nb_points` doubles, `out` is null or writable for `7 * (nb_points - 1)`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalStripCircles(const double *guide,
+                                           const double *border,
+                                           int nb_points,
+                                           double *out);
+
+/**
+ * Writes the strip whose quads have the given circles, two or more, of which consecutive ones meet in two points: `nb_circles + 1`
+ * points on either side. The first crossing edge goes through the point of the first circle nearest to `start`, the last one
+ * through that of the last circle nearest to `end`; either may be null. `distance`, which may be null, is the largest
+ * distance of a point from a circle that it should be on.
+ *
+ * # Safety
+ * `circles` is null or readable for `7 * nb_circles` doubles, `start` and `end` are null or readable for 3; `guide` and `border` are
+ * null or writable for `3 * (nb_circles + 1)`, `distance` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalStripOfCircles(const double *circles,
+                                             int nb_circles,
+                                             const double *start,
+                                             const double *end,
+                                             double *guide,
+                                             double *border,
+                                             double *distance);
+
+/**
+ * Tells how a frame comes back around a closed polygon, whose last point may repeat the first. Each output may be null: the
+ * product of the reflections, 9 doubles column by column; how far it is from what a smooth surface needs; whether that is round-off;
+ * for an odd number of edges the first tangent that the frame must have (zero for an even number, where it is free).
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles; `matrix` is null or writable for 9 doubles, `tangent` for 3, `residual`
+ * and `closes` for one value.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalHolonomy(const double *points,
+                                       int nb_points,
+                                       double *matrix,
+                                       double *residual,
+                                       int *closes,
+                                       double *tangent);
+
+/**
+ * Writes the frame at the first point of a closed polygon with which the surface is smooth across the seam and that is nearest to
+ * `wish`, the unit tangents `t1` and `t2`; 9 doubles. Refused with `SO_NOT_CLOSED` where there is none.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles, `wish` for 6; `out` is null or writable for 9.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalClosedFrame(const double *points,
+                                          int nb_points,
+                                          const double *wish,
+                                          double *out);
+
+/**
+ * Writes the closed polygon inscribed in a sphere about the origin whose edges are parallel to those of a closed polygon and nearest
+ * to them in length, if there is room for `capacity` points, and their number to `count`: 0 if there is none, as the polygon is not
+ * pseudo-spherical. `reversed_count`, which may be null, is the number of its edges that point the other way.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles; `out` is null or writable for `3 * capacity` doubles, `count` and
+ * `reversed_count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalParallelOnSphere(const double *points,
+                                               int nb_points,
+                                               double *out,
+                                               int capacity,
+                                               int *count,
+                                               int *reversed_count);
+
+/**
+ * Writes the circle that closes a strip: `first_circle` goes through `start` and the guide's first point `guide_first`,
+ * `last_circle` through the guide's last point `guide_last`. `first` is where `start` must be, `last` the point opposite to
+ * `guide_last`. Other outputs may be null: `which_case` is 1 if both circles are on one sphere, so that `start` stays, or 2;
+ * `is_crossed` whether the closing quad crosses itself.
+ *
+ * # Safety
+ * Circles are null or readable for 7 doubles, points for 3; `circle` is null or writable for 7, `first` and `last` for 3, the others
+ * for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCloseCircles(const double *first_circle,
+                                           const double *last_circle,
+                                           const double *start,
+                                           const double *guide_first,
+                                           const double *guide_last,
+                                           double *circle,
+                                           double *first,
+                                           double *last,
+                                           int *which_case,
+                                           int *is_crossed);
+
+/**
+ * Closes a strip of `nb_points` points on either side with the guide's last point `last`: writes the border of `nb_points + 1` points,
+ * of which the first moves where it must. `circle` (of the closing quad), `which_case` and `is_flipped` (one for each quad, the
+ * closing one last) may be null.
+ *
+ * # Safety
+ * `guide` and `border` are null or readable for `3 * nb_points` doubles, `last` for 3; `out_border` is null or writable for
+ * `3 * (nb_points + 1)` doubles, `circle` for 7, `is_flipped` for `nb_points + 1` ints, `which_case` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCloseStrip(const double *guide,
+                                         const double *border,
+                                         int nb_points,
+                                         const double *last,
+                                         double *out_border,
+                                         double *circle,
+                                         int *which_case,
+                                         int *is_flipped);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_canalDefaultFitOptions(struct shapeop_canal_fit_options *options);
+
+/**
+ * Writes points spread over the cubic spline through given ones, and its unit tangents there, which may be null. `spacing` is a
+ * `shapeop_canal_spacing`; for `SO_CANAL_SPACING_POINTS` `nb` is that of the points themselves (without a last one that
+ * repeats the first of a closed curve). A closed curve's first point is not repeated.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles; `out` and `tangents` are null or writable for `3 * nb`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCurvePoints(const double *points,
+                                          int nb_points,
+                                          int is_closed,
+                                          int spacing,
+                                          double *out,
+                                          double *tangents,
+                                          int nb);
+
+/**
+ * Writes normals along a curve through given points, the first one at an angle (see `shapeop_canal_fit_options.angle`), or as near as
+ * possible to `first` if that is not null. `tangents`, of any length, are those of the curve; null: of the spline through the
+ * points. `normals` turn as little as the curve allows; `frames` (9 doubles each) are mirrored from point to point, as those of
+ * a cyclidic net along its guide. Each of the two may be null. The last point of a closed curve must not repeat the first.
+ *
+ * # Safety
+ * `points` and `tangents` are null or readable, `normals` is null or writable, for `3 * nb_points` doubles; `first` is null or readable
+ * for 3; `frames` is null or writable for `9 * nb_points`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalNormals(const double *points,
+                                      const double *tangents,
+                                      int nb_points,
+                                      int is_closed,
+                                      double angle,
+                                      const double *first,
+                                      double *normals,
+                                      double *frames);
+
+/**
+ * Writes the spheres that touch a curve in given points, with their centers along `normals` (of any length), and a second curve, the
+ * spline through `curve`: the center and the radius, 4 doubles each. Each other output may be null: how far each center is along its
+ * normal, where each sphere touches the second curve, bits `SHAPEOP_SPHERE_...` for each, and the sum of the squared differences of
+ * radius and distance.
+ *
+ * # Safety
+ * `points` and `normals` are null or readable for `3 * nb_points` doubles, `curve` for `3 * nb_curve`; for each point `spheres` is null
+ * or writable for 4 doubles, `offsets` for one, `feet` for 3, `flags` for one int; `residual` for one double.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalTouchingSpheres(const double *points,
+                                              const double *normals,
+                                              int nb_points,
+                                              const double *curve,
+                                              int nb_curve,
+                                              int is_curve_closed,
+                                              double *spheres,
+                                              double *offsets,
+                                              double *feet,
+                                              int *flags,
+                                              double *residual);
+
+/**
+ * Writes the circles in which each sphere (its center and its radius, 4 doubles) meets the next: one fewer than spheres.
+ *
+ * # Safety
+ * `spheres` is null or readable for `4 * nb_spheres` doubles, `out` is null or writable for `7 * (nb_spheres - 1)`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCharacteristicCircles(const double *spheres,
+                                                    int nb_spheres,
+                                                    double *out);
+
+/**
+ * Creates the canal surface through the points of a first curve that touches a second one: the splines through `guide` and `curve`. Row
+ * `i` is on circle `i`, from its point of the first curve on unless the section starts elsewhere. Rows do not wrap; columns do around
+ * whole circles. `options` is null for the defaults. Null if it is refused.
+ *
+ * The outputs may be null (a count with them): the circles, 7 doubles each, and the spheres between them, 4 doubles each, with bits
+ * `SHAPEOP_SPHERE_...`, are written if there is room for so many. `report` is null, or its `struct_size` is set.
+ *
+ * # Safety
+ * `guide` and `curve` are null or readable for 3 times their number of points; `circles` is null or writable for
+ * `7 * circle_capacity` doubles, `spheres` for `4 * sphere_capacity`, `sphere_flags` for `sphere_capacity` ints, the counts for one.
+ * `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many bytes.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalFit(const double *guide,
+                                      int nb_guide,
+                                      int is_guide_closed,
+                                      const double *curve,
+                                      int nb_curve,
+                                      int is_curve_closed,
+                                      const struct shapeop_canal_fit_options *options,
+                                      double *circles,
+                                      int circle_capacity,
+                                      int *circle_count,
+                                      double *spheres,
+                                      int *sphere_flags,
+                                      int sphere_capacity,
+                                      int *sphere_count,
+                                      struct shapeop_canal_fit_report *report);
+
+/**
+ * Writes points of a section of a circle at equal angles, from its point `start` on: as many as `options->column_count` says. `target` is
+ * where the second curve passes, for `SO_CANAL_SECTION_TO_CURVE`; else null. Of `options` those on the section count.
+ *
+ * # Safety
+ * `circle` is null or readable for 7 doubles, `start` and `target` for 3; `options` is null, or its `struct_size` is set and it is
+ * readable for so many bytes; `out` is null or writable for 3 times the number of points.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalSectionPoints(const double *circle,
+                                            const double *start,
+                                            const double *target,
+                                            const struct shapeop_canal_fit_options *options,
+                                            double *out);
+
+/**
+ * Writes the grid of which row `i` is on circle `i` and row 0 is given; `guide` has a point of each circle, along which the rows lead
+ * from circle to circle. Consecutive circles are on one sphere. If `wraps` is 1 the rows close around the circles.
+ *
+ * # Safety
+ * `circles` is null or readable for `7 * nb_circles` doubles, `guide` for `3 * nb_circles`, `row` for `3 * nb_row`; `out` is null or
+ * writable for `3 * nb_circles * nb_row`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalMeshCircles(const double *circles,
+                                          const double *guide,
+                                          int nb_circles,
+                                          const double *row,
+                                          int nb_row,
+                                          int wraps,
+                                          double *out);
+
+/**
+ * Writes a point of each circle from `start`, a point of the first, on. With `guide`, a point of each circle, they make circular quads
+ * with it; with null they are a column along which a mesh closes around whole circles: the circles' tangents there are mirror
+ * images of each other.
+ *
+ * # Safety
+ * `circles` is null or readable for `7 * nb_circles` doubles, `start` for 3; `guide` is null or readable, `out` null or writable,
+ * for `3 * nb_circles`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalColumn(const double *circles,
+                                     int nb_circles,
+                                     const double *start,
+                                     const double *guide,
+                                     double *out);
+
+/**
+ * Creates the surface of revolution of a profile about the axis through `axis_point` along `axis_direction`. Column 0 is the profile,
+ * row `i` runs along the circle of its point `i`, `columns` points from 0 to `angle` (0 to 2 pi, right-handed); a full turn wraps.
+ * Null if it is refused, as a profile is that is not in a plane through the axis.
+ *
+ * # Safety
+ * `profile` is null or readable for `3 * nb_profile` doubles, the axis for 3 each.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalRevolution(const double *profile,
+                                             int nb_profile,
+                                             const double *axis_point,
+                                             const double *axis_direction,
+                                             double angle,
+                                             int columns);
+
+/**
+ * Creates the moulding surface of a planar rail and a profile in an orthogonal plane that starts on it. Column 0 is the rail, row 0
+ * the profile. Each output may be null: the angle, in radians, between the normal of the profile's plane and the rail's start;
+ * how many edges point the other way than the rail's, where the profile reaches beyond the rail's evolute; for a closed rail, how
+ * far the profile is from itself after one turn. Null if it is refused.
+ *
+ * # Safety
+ * `rail` and `profile` are null or readable for 3 times their number of points; each output is null or writable for one value.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalMoulding(const double *rail,
+                                           int nb_rail,
+                                           const double *profile,
+                                           int nb_profile,
+                                           double *obliquity,
+                                           int *reversed_count,
+                                           double *closing_gap);
+
+/**
+ * As `shapeop_canalMoulding`, for a rail in space and a planar profile that starts on it: the Monge surface, on which the profile
+ * moves without twist.
+ *
+ * # Safety
+ * As `shapeop_canalMoulding`.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalMonge(const double *rail,
+                                        int nb_rail,
+                                        const double *profile,
+                                        int nb_profile,
+                                        double *obliquity,
+                                        int *reversed_count,
+                                        double *closing_gap);
+
+/**
+ * Writes the surface of translation, `rail[i] + profile[j] - profile[0]`, if there is room for `capacity` points, and their number to
+ * `count`. Its quads are planar but not circular, so it is no surface with a handle. With `factors`, one above 0 for each rail
+ * point, it is the surface of scale-translation, `rail[i] + factors[i] (profile[j] - profile[0])`; null for none. A rail or a
+ * profile whose last point repeats the first closes the grid. `rows`, `columns` and `wraps` may be null.
+ *
+ * # Safety
+ * `rail` and `profile` are null or readable for 3 times their number of points, `factors` for `nb_rail` doubles; `points` is null
+ * or writable for `3 * capacity` doubles, the other outputs for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalTranslation(const double *rail,
+                                          int nb_rail,
+                                          const double *profile,
+                                          int nb_profile,
+                                          const double *factors,
+                                          double *points,
+                                          int capacity,
+                                          int *count,
+                                          int *rows,
+                                          int *columns,
+                                          int *wraps);
+
+/**
+ * Tells the centers of inversion that map four points of a circle, in order round it, to the corners of an isosceles trapezoid with
+ * the parallel sides `P1 P2` and `P4 P3`. Each output may be null: the circle through them; the circle of centers, 7 doubles as
+ * all circles, or if `is_line` is 1 the line: a point, a unit vector, and 0; and the two ends of the open interval of
+ * ratios of the parallel sides for which there are solutions.
+ *
+ * # Safety
+ * `corners` is null or readable for 12 doubles; `circle` and `centers` are null or writable for 7, `is_line` for one int,
+ * `ratio_limits` for 2 doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCenters(const double *corners,
+                                      double *circle,
+                                      double *centers,
+                                      int *is_line,
+                                      double *ratio_limits);
+
+/**
+ * Writes a center of inversion, its angle on the circle of centers and the ratio of the parallel sides that it leads to. Each output
+ * may be null. `center_kind` is a `shapeop_canal_center` but `SO_CANAL_CENTER_CHORD`; `center_value` and `center_point` belong to it.
+ * `is_infinite` is 1 where the center is at infinity, as no inversion is needed; `center` then is zero.
+ *
+ * # Safety
+ * `corners` is null or readable for 12 doubles, `center_point` for 3; `center` is null or writable for 3, the others for one value.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalCenter(const double *corners,
+                                     int center_kind,
+                                     double center_value,
+                                     const double *center_point,
+                                     double *center,
+                                     int *is_infinite,
+                                     double *omega,
+                                     double *ratio);
+
+/**
+ * Creates the M-revolution surface over a planar curve, of `columns` points along each arch. The curve runs from the corner `P1` to
+ * `P4`; `p2` and `p3` are on one circle with its ends, and `up` is a direction off the plane, to whose side the arches rise. The
+ * center is chosen as in `shapeop_canalCenter`. `omega`, its angle, and `axis`, a point and a unit vector of the axis of revolution
+ * of the base, may be null. Null if it is refused.
+ *
+ * # Safety
+ * `curve` is null or readable for `3 * nb_curve` doubles, `p2`, `p3`, `center_point` and `up` for 3; `omega` is null or writable for
+ * one, `axis` for 6.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalMRevolution(const double *curve,
+                                              int nb_curve,
+                                              const double *p2,
+                                              const double *p3,
+                                              int center_kind,
+                                              double center_value,
+                                              const double *center_point,
+                                              const double *up,
+                                              int columns,
+                                              double *omega,
+                                              double *axis);
+
+/**
+ * As `shapeop_canalMRevolution`, over a curve on a sphere. `pole` is a point of the sphere off the curve, at which it is flattened;
+ * null: one that is far from all points. Arches rise outside of the sphere if `is_outside` is 1, inside if it is 0.
+ *
+ * # Safety
+ * As `shapeop_canalMRevolution`; `sphere_center` and `pole` are null or readable for 3 doubles.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalSphericalMRevolution(const double *curve,
+                                                       int nb_curve,
+                                                       const double *p2,
+                                                       const double *p3,
+                                                       const double *sphere_center,
+                                                       double radius,
+                                                       const double *pole,
+                                                       int is_outside,
+                                                       int center_kind,
+                                                       double center_value,
+                                                       const double *center_point,
+                                                       int columns,
+                                                       double *omega,
+                                                       double *axis);
+
+/**
+ * Creates the M-moulding surface through a planar curve, from `P1` to `P4`, and a rail in space, from `P1`. Column 0 is the curve, row
+ * 0 the rail. The center of inversion is the point `center_point` of the curve's plane if `p3` is null; else it is chosen as in
+ * `shapeop_canalCenter`, or by `SO_CANAL_CENTER_CHORD`, for the far corner `p3`, which is on one circle with `P1`, `P4` and the
+ * rail's end. Each output may be null: `obliquity`, `reversed_count` and `closing_gap` as in `shapeop_canalMoulding`, and the
+ * distance of the surface's last corner from `p3` (0 without one). Null if it is refused.
+ *
+ * # Safety
+ * `curve` and `rail` are null or readable for 3 times their number of points, `p3` and `center_point` for 3 doubles; each output is
+ * null or writable for one value.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalMMoulding(const double *curve,
+                                            int nb_curve,
+                                            const double *rail,
+                                            int nb_rail,
+                                            const double *p3,
+                                            int center_kind,
+                                            double center_value,
+                                            const double *center_point,
+                                            double *obliquity,
+                                            int *reversed_count,
+                                            double *closing_gap,
+                                            double *corner_gap);
+
+/**
+ * Creates the C-canal surface along `guide` whose row 0 is the convex planar polyline `section`, which starts at the guide's first point.
+ * The far ends of the sections are at the distances `lengths` from the guide, one for each of its points, the first that of the
+ * section; or, if `lengths` is null, on a second curve, the spline through `curve`. If `projects_lengths` is 1 a length that is not
+ * attainable is replaced by the nearest that is. `progress`, which may be null, can cancel: the surface then ends where it was.
+ *
+ * Each output may be null; all have one entry for each row of the surface, of which there are at most `nb_guide`: the distances made,
+ * how far each is off, the least and the greatest attainable ones, and whether a length was replaced. Null if it is refused.
+ *
+ * # Safety
+ * `guide`, `section` and `curve` are null or readable for 3 times their number of points, `lengths` for `nb_guide` doubles; `out_lengths`,
+ * `deviations` and `is_projected` are null or writable for `nb_guide` values, `attainable` for twice as many, `is_cancelled` for one.
+ * `progress` is null or a function of that signature.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalCCanal(const double *guide,
+                                         int nb_guide,
+                                         const double *section,
+                                         int nb_section,
+                                         const double *lengths,
+                                         const double *curve,
+                                         int nb_curve,
+                                         int is_curve_closed,
+                                         int projects_lengths,
+                                         shapeop_canal_progress_callback progress,
+                                         void *user,
+                                         double *out_lengths,
+                                         double *deviations,
+                                         double *attainable,
+                                         int *is_projected,
+                                         int *is_cancelled);
+
+/**
+ * The number of named families of super-canal surfaces, or -1.
+ */
+SHAPEOP_API int shapeop_canalFamilyCount(void);
+
+/**
+ * The name of the family `index`, such as `MC-canal`; null if there is none. Valid as long as the library is loaded.
+ */
+SHAPEOP_API const char *shapeop_canalFamilyName(int index);
+
+/**
+ * Writes how surfaces of a family are made: the `shapeop_canal_kind` of the base to `kind`, which may be null, and, if there is room
+ * for `capacity` of them, the `shapeop_canal_step` of each transformation after it; `count` is their number.
+ *
+ * # Safety
+ * `name` is null or ends with a zero; `steps` is null or writable for `capacity` ints, `kind` and `count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalFamilySteps(const char *name,
+                                          int *kind,
+                                          int *steps,
+                                          int capacity,
+                                          int *count);
+
+/**
+ * Measures a surface and writes what was found to `out`, whose `struct_size` must be set. It may take seconds for large nets.
+ *
+ * # Safety
+ * `out` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalProperties(struct ShapeOpCanal *surface,
+                                         struct shapeop_canal_properties *out);
+
+/**
+ * Writes the node axes of a circular grid, a unit vector for each point, that are handed on by reflection from `first` at point
+ * (0, 0): beams between them are planar and meet in the axes without torsion. `gaps`, which may be null, are the differences
+ * between the depths along each axis down to which beams of height 1 reach.
+ *
+ * # Safety
+ * `points` is null or readable, `axes` null or writable, for `3 * rows * columns` doubles; `first` is readable for 3, `gaps` null or
+ * writable for `rows * columns`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalNodeAxes(const double *points,
+                                       int rows,
+                                       int columns,
+                                       int wraps,
+                                       const double *first,
+                                       double *axes,
+                                       double *gaps);
+
+/**
+ * As `shapeop_canalNodeAxes`, with the first axis for which the sum of the squared gaps is least. `progress` may be null; a
+ * cancelled search gives the best so far, and `is_cancelled`, which may be null, is 1.
+ *
+ * # Safety
+ * As `shapeop_canalNodeAxes`; `is_cancelled` is null or writable for one int, `progress` null or a function of that signature.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalNodeAxesOfLeastGaps(const double *points,
+                                                  int rows,
+                                                  int columns,
+                                                  int wraps,
+                                                  shapeop_canal_progress_callback progress,
+                                                  void *user,
+                                                  double *axes,
+                                                  double *gaps,
+                                                  int *is_cancelled);
+
+/**
+ * Writes, for given axes, the gap at each point for beams of height 1, and the depth along each axis down to which the deepest beam
+ * of `height` reaches. Each output may be null.
+ *
+ * # Safety
+ * `points` and `axes` are null or readable for `3 * rows * columns` doubles; `gaps` and `depths` are null or writable for
+ * `rows * columns`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalNodeGaps(const double *points,
+                                       int rows,
+                                       int columns,
+                                       int wraps,
+                                       const double *axes,
+                                       double height,
+                                       double *gaps,
+                                       double *depths);
+
+/**
+ * Writes a grid moved by `distance` along its axes. Along the normals of the frames of a circular grid all edges stay parallel.
+ *
+ * # Safety
+ * `points` and `axes` are null or readable, `out` is null or writable, for `3 * rows * columns` doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalOffset(const double *points,
+                                     int rows,
+                                     int columns,
+                                     int wraps,
+                                     const double *axes,
+                                     double distance,
+                                     double *out);
+
+/**
+ * Writes a planar beam along every edge, `height` measured along each axis, against it: first the edges from row to row, then
+ * those from column to column. `nodes` has 2 point indices for each, `corners` its 4 corners. They are written if there is
+ * room for `capacity` beams; `count` is their number. `nodes` may be null.
+ *
+ * # Safety
+ * `points` and `axes` are null or readable for `3 * rows * columns` doubles; `nodes` is null or writable for `2 * capacity` ints,
+ * `corners` for `12 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalBeams(const double *points,
+                                    int rows,
+                                    int columns,
+                                    int wraps,
+                                    const double *axes,
+                                    double height,
+                                    int *nodes,
+                                    double *corners,
+                                    int capacity,
+                                    int *count);
+
+/**
+ * Lays every face of a grid into a plane, with the axes at its corners. One entry for each face; each output may be null:
+ * `outlines`, 4 corners with x and y, the first the origin, the second on +x; `lower_outlines`, those of the lower side at
+ * `thickness` below, cut along the mitres; `mitres`, per edge the angle in radians between its cut, which contains the axes, and the
+ * panel's normal; `circles` through the corners, 7 doubles, zeros where three corners are on a line; `heights`, how far a corner is
+ * from the panel's plane.
+ *
+ * # Safety
+ * `points` and `axes` are null or readable for `3 * rows * columns` doubles; for each face `outlines` and `lower_outlines` are null
+ * or writable for 8 doubles, `mitres` for 4, `circles` for 7, `heights` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalPanels(const double *points,
+                                     int rows,
+                                     int columns,
+                                     int wraps,
+                                     const double *axes,
+                                     double thickness,
+                                     double *outlines,
+                                     double *lower_outlines,
+                                     double *mitres,
+                                     double *circles,
+                                     double *heights);
+
+/**
+ * The JSON form (`docs/canal-parts.schema.json`) of the panels and beams of a grid with given axes: panels with a lower outline where
+ * `thickness` is above 0, beams of `height`. Null if it is refused. Valid as long as the text of `shapeop_canalText`.
+ *
+ * # Safety
+ * `points` and `axes` are null or readable for `3 * rows * columns` doubles.
+ */
+SHAPEOP_API
+const char *shapeop_canalPartsText(const double *points,
+                                   int rows,
+                                   int columns,
+                                   int wraps,
+                                   const double *axes,
+                                   double thickness,
+                                   double height);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,5 +1,7 @@
 //! What can be asked for: commands, options, and the help that teaches them.
 
+pub mod canal;
+
 use std::path::PathBuf;
 
 use clap::builder::styling::{AnsiColor, Styles};
@@ -26,6 +28,7 @@ Examples:
   shapeop rationalize roof.obj                   planar to the last digits, and fair
   shapeop solve problem.json                     any set of constraints
   shapeop explore problem.json --handles moves.json   a drag, hard constraints met all the way
+  shapeop canal                                  surfaces of planar circular quads from curves
   shapeop types                                  the constraints there are
 
 Files: OBJ, OFF and PLY with polygons of any size. The order of points and faces stays as it is.
@@ -137,6 +140,8 @@ Examples:
 Planarity of a quad is the distance between its diagonals over their mean length; of any other face, the distance \
 of the farthest corner from the best-fit plane over the face's mean edge. Faces and points count from 0.")]
     Check(CheckArgs),
+    /// Super-canal surfaces: planar circular quads from curves; panels and beams for the workshop
+    Canal(canal::CanalArgs),
     /// List the constraint types, or explain one
     #[command(after_help = "\
 Examples:

@@ -7,7 +7,7 @@ use shapeop::problem::Problem;
 use shapeop::solver::Solver;
 
 use crate::colours::Scale;
-use crate::picture::{On, Panel};
+use crate::picture::{On, Overlay, Panel};
 use crate::shown::worst_of;
 
 /// The end of the scale, in percent of the mean edge: a millimetre in a metre, which a hard constraint should be far below.
@@ -61,7 +61,9 @@ impl Cells {
         };
         let values = self.constraints.iter().map(largest).collect();
         let (on, handles) = (self.on, Vec::new());
-        let mut panel = Panel { mesh, edges, title, values, on, pointed_at: None, caption: String::new(), handles };
+        let overlay = Overlay::default();
+        let mut panel =
+            Panel { mesh, edges, title, values, on, pointed_at: None, caption: String::new(), handles, overlay };
         if let Some((index, words)) = worst_of(&panel) {
             (panel.pointed_at, panel.caption) = (Some(index), words);
         }

@@ -4,6 +4,7 @@
 mod args;
 mod cells;
 mod commands;
+mod curve_file;
 mod drag;
 mod exploration;
 mod moves;
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
         }
         Command::Explore(args) => commands::explore::run(&args, is_quiet),
         Command::Check(args) => commands::check::run(&args, is_quiet),
+        Command::Canal(args) => commands::canal::run(&args.command, is_quiet),
         Command::Types(args) => commands::types::run(&args, is_quiet),
     };
     match ending {

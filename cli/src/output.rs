@@ -47,6 +47,11 @@ impl Output {
         Ok(())
     }
 
+    /// Writes a text; `ending` follows the run's name.
+    pub fn text(&mut self, what: &'static str, ending: &str, text: &str) -> Result<()> {
+        self.write(what, ending, text.as_bytes())
+    }
+
     /// Where [`Self::mesh`] writes.
     pub fn mesh_path(&self, format: Format) -> String {
         self.path(&format!(".{format}")).display().to_string()
@@ -63,6 +68,11 @@ impl Output {
 
     pub fn mesh(&mut self, mesh: &Mesh, format: Format) -> Result<()> {
         self.write("mesh", &format!(".{format}"), &encode(mesh, format)?)
+    }
+
+    /// Writes another mesh than the main one; `ending` follows the run's name, before the extension.
+    pub fn other_mesh(&mut self, what: &'static str, ending: &str, mesh: &Mesh, format: Format) -> Result<()> {
+        self.write(what, &format!("{ending}.{format}"), &encode(mesh, format)?)
     }
 
     /// Writes a picture given as SVG in the format asked for. `what` also names the file, except for the first picture.

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use glam::{DVec2, DVec3};
 use shapeop::mesh::Mesh;
 use svg::Document;
-use svg::node::element::{Circle, Group, Line, Path, Polygon, Rectangle, Text};
+use svg::node::element::{Circle, Group, Line, Path, Polygon, Polyline, Rectangle, Text};
 
 use crate::camera::Camera;
 use crate::colours::{PLAIN, Rgb, Scale, hex};
@@ -29,6 +29,10 @@ const SEEN: f64 = 0.02;
 const INK: &str = "#1f2430";
 const FAINT: &str = "#667085";
 const HANDLE: &str = "#0b6fb8";
+/// Of curves over a mesh, in turns.
+const CURVES: [&str; 3] = ["#0b6fb8", "#b3277d", "#2e7d32"];
+/// A face that stands out.
+const MARKED: Rgb = [0.94, 0.45, 0.25];
 
 /// One mesh in a picture.
 pub struct Panel<'a> {
@@ -45,6 +49,19 @@ pub struct Panel<'a> {
     pub caption: String,
     /// Points that are drawn to targets, each as where it is and its target.
     pub handles: Vec<[DVec3; 2]>,
+    /// What is drawn besides the mesh.
+    pub overlay: Overlay,
+}
+
+/// Curves over a mesh, and faces that stand out.
+#[derive(Clone, Debug, Default)]
+pub struct Overlay {
+    /// Polylines, drawn thick over everything, each in a colour of its own.
+    pub curves: Vec<Vec<DVec3>>,
+    /// Polylines drawn thin over the mesh, all in one colour.
+    pub thin_curves: Vec<Vec<DVec3>>,
+    /// Faces in a colour that warns.
+    pub marked: Vec<usize>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -92,7 +109,8 @@ struct Room {
 impl Picture<'_> {
     pub fn to_svg(&self) -> String {
         let targets = |panel: &Panel<'_>| panel.handles.iter().map(|[_, target]| *target).collect::<Vec<_>>();
-        let points = |panel: &Panel<'_>| [panel.mesh.points.clone(), targets(panel)].concat();
+        let curves = |panel: &Panel<'_>| [panel.overlay.curves.concat(), panel.overlay.thin_curves.concat()].concat();
+        let points = |panel: &Panel<'_>| [panel.mesh.points.clone(), targets(panel), curves(panel)].concat();
         let all_points: Vec<DVec3> = self.panels.iter().flat_map(points).collect();
         // The last: a cloth shows itself when it hangs, not while it lies.
         let normals: Vec<DVec3> = self.panels.last().into_iter().flat_map(|panel| normals_of(panel.mesh)).collect();
@@ -155,6 +173,14 @@ impl Picture<'_> {
             _ if !panel.edges.is_empty() => self.draw_edges(group, panel, camera, &place),
             _ => draw_points(group, panel, &place),
         };
+        let Overlay { curves, thin_curves, .. } = &panel.overlay;
+        let thin = thin_curves.iter().map(|curve| (curve, HANDLE, 1.4));
+        let thick = curves.iter().zip(CURVES.iter().cycle()).map(|(curve, colour)| (curve, *colour, 3.2));
+        for (curve, colour, width) in thin.chain(thick) {
+            let points = coordinates(curve.iter().map(|&point| place(point)));
+            let line = Polyline::new().set("points", points).set("fill", "none").set("stroke-linejoin", "round");
+            group = group.add(line.set("stroke", colour).set("stroke-width", width).set("stroke-linecap", "round"));
+        }
         for [at, target] in panel.handles.iter().map(|pair| pair.map(place)) {
             group = group.add(handle(at, target));
         }
@@ -186,6 +212,7 @@ impl Picture<'_> {
 
     fn colour(&self, panel: &Panel<'_>, index: usize) -> Rgb {
         match (&self.scale, panel.values.get(index)) {
+            _ if panel.on == On::Faces && panel.overlay.marked.contains(&index) => MARKED,
             (Some(scale), Some(&value)) => scale.colour(value),
             _ => PLAIN,
         }
@@ -438,6 +465,7 @@ mod tests {
             pointed_at: None,
             caption: String::new(),
             handles: Vec::new(),
+            overlay: Overlay::default(),
         };
         let (title, range, mark, end_words) = (String::new(), [0.0, 1.0], None, ["", ""]);
         let scale = Some(Scale { title, unit: "%", range, is_diverging: false, mark, end_words });

@@ -52,6 +52,15 @@ impl Progress {
             .set_message(format!("{measure} {value:.4e}  largest move {largest_move:.1e}  (Ctrl-C stops and writes)"));
     }
 
+    /// Any position with a message.
+    pub fn say(&self, position: usize, message: &str) {
+        if self.bar.is_hidden() {
+            return;
+        }
+        self.bar.set_position(position as u64);
+        self.bar.set_message(format!("{message}  (Ctrl-C stops and writes)"));
+    }
+
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }

@@ -1,8 +1,8 @@
-//! Handles: small integers that name a solver, or are recognised as naming none.
+//! Handles: small integers that name a solver or a surface, or are recognised as naming none.
 //!
 //! A handle is `generation << 16 | index`: nonzero, below 2^31, so it survives a caller that cuts it to a C `int`. It
 //! is read back from the low 32 bits alone, because the upper half of a register that was loaded as an `int` is not
-//! defined. The generation of a place is raised whenever its solver is deleted; when its generations are used up, the
+//! defined. The generation of a place is raised whenever its object is deleted; when its generations are used up, the
 //! place is never used again. So no handle is ever given out twice, and a deleted one is recognised for good. Free
 //! places wait in a queue, which spreads the generations.
 
@@ -11,6 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use super::{current, messages::Message};
 use crate::error::{Error, Result, Status};
+use crate::geometry::canal::surface::SuperCanal;
 use crate::solver::Solver;
 
 /// A solver. What points to it is no address but a small integer, a handle.
@@ -20,7 +21,7 @@ pub struct ShapeOpSolver {
     _private: [u8; 0],
 }
 
-/// Solvers at most at one time: what 16 bits can count.
+/// Objects at most at one time: what 16 bits can count.
 const MOST_PLACES: usize = 1 << 16;
 
 /// The last generation of a place: what the 15 bits can count that keep a handle below 2^31.
@@ -31,7 +32,7 @@ const LAST_GENERATION: u16 = 0x7fff;
 pub(super) struct Handle(u32);
 
 impl Handle {
-    /// No solver's.
+    /// No object's.
     pub(super) const NONE: Self = Self(0);
 
     pub(super) fn new(op: *mut ShapeOpSolver) -> Self {
@@ -51,29 +52,76 @@ impl Handle {
     }
 }
 
+/// What the library keeps for a caller.
+pub(super) enum Object {
+    Solver(Box<Solver>),
+    Canal(Box<SuperCanal>),
+}
+
+impl Object {
+    /// What messages call it.
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Solver(_) => Solver::NAME,
+            Self::Canal(_) => SuperCanal::NAME,
+        }
+    }
+}
+
+/// A kind of object.
+pub(super) trait Kind: Sized {
+    /// What messages call it.
+    const NAME: &'static str;
+    /// The argument that is its handle.
+    const ARGUMENT: &'static str;
+
+    /// The object, if it is of this kind.
+    fn of(object: &mut Object) -> Option<&mut Self>;
+}
+
+impl Kind for Solver {
+    const NAME: &'static str = "solver";
+    const ARGUMENT: &'static str = "op";
+
+    fn of(object: &mut Object) -> Option<&mut Self> {
+        if let Object::Solver(solver) = object { Some(solver) } else { None }
+    }
+}
+
+impl Kind for SuperCanal {
+    const NAME: &'static str = "surface";
+    const ARGUMENT: &'static str = "surface";
+
+    fn of(object: &mut Object) -> Option<&mut Self> {
+        if let Object::Canal(surface) = object { Some(surface) } else { None }
+    }
+}
+
 /// What a handle leads to.
 pub(super) struct Slot {
+    /// [`Kind::NAME`] of what is or was here: kinds are told apart without the lock.
+    name: &'static str,
     state: Mutex<State>,
-    /// What the last call that got hold of the solver left. Locked only to copy it.
+    /// What the last call that got hold of the object left. Locked only to copy it.
     pub(super) message: Mutex<Message>,
 }
 
-/// A solver, or why there is none.
+/// An object, or why there is none.
 pub(super) enum State {
-    Alive(Box<Solver>),
-    /// A panic left the solver in a state that nobody knows.
+    Alive(Object),
+    /// A panic left the object in a state that nobody knows.
     Broken,
     /// Deleted while another call had already found the slot.
     Deleted,
 }
 
 impl Slot {
-    fn new() -> Self {
-        Self { state: Mutex::new(State::Alive(Box::default())), message: Mutex::default() }
+    fn new(object: Object) -> Self {
+        Self { name: object.name(), state: Mutex::new(State::Alive(object)), message: Mutex::default() }
     }
 
     /// The state, if no other call is using it.
-    pub(super) fn try_lock(&self, handle: Handle) -> Result<MutexGuard<'_, State>> {
+    pub(super) fn try_lock<K: Kind>(&self, handle: Handle) -> Result<MutexGuard<'_, State>> {
         match self.state.try_lock() {
             Ok(state) => Ok(state),
             // Calls catch their panics inside the lock, so this does not happen; if it does, `Broken` says why.
@@ -84,26 +132,28 @@ impl Slot {
             }
             Err(TryLockError::WouldBlock) => {
                 let reason = if current::solver(handle).is_some() {
-                    "the solver is busy: from inside its progress callback it can only be read"
+                    "the solver is busy: from inside its progress callback it can only be read".to_owned()
                 } else {
-                    "the solver is busy: another call is using it"
+                    format!("the {} is busy: another call is using it", K::NAME)
                 };
-                Err(Error::new(Status::Busy, reason).at("op"))
+                Err(Error::new(Status::Busy, reason).at(K::ARGUMENT))
             }
         }
     }
 }
 
 impl State {
-    /// The solver, if it is usable.
-    pub(super) fn solver(&mut self, handle: Handle) -> Result<&mut Solver> {
+    /// The object, if it is usable.
+    pub(super) fn object<K: Kind>(&mut self, handle: Handle) -> Result<&mut K> {
         match self {
-            Self::Alive(solver) => Ok(solver),
+            Self::Alive(object) => K::of(object).ok_or_else(|| none::<K>(handle)),
             Self::Broken => {
-                let reason = "an earlier error inside the library made this solver unusable; it can only be deleted";
-                Err(Error::new(Status::Internal, reason).at("op"))
+                let what = K::NAME;
+                let reason =
+                    format!("an earlier error inside the library made this {what} unusable; it can only be deleted");
+                Err(Error::new(Status::Internal, reason).at(K::ARGUMENT))
             }
-            Self::Deleted => Err(no_solver(handle)),
+            Self::Deleted => Err(none::<K>(handle)),
         }
     }
 }
@@ -121,7 +171,7 @@ struct Place {
     slot: Option<Arc<Slot>>,
 }
 
-/// Locked only to look up, insert or remove: never while a solver works.
+/// Locked only to look up, insert or remove: never while an object is used.
 static TABLE: Mutex<Table> = Mutex::new(Table::new(MOST_PLACES, LAST_GENERATION));
 
 impl Table {
@@ -137,7 +187,8 @@ impl Table {
                 self.places.len() - 1
             }
             None => {
-                let reason = format!("{} solvers exist or their handles are used up; delete some", self.places.len());
+                let (count, things) = (self.places.len(), slot.name);
+                let reason = format!("{count} {things}s exist or their handles are used up; delete some");
                 return Err(Error::new(Status::TooLarge, reason));
             }
         };
@@ -168,24 +219,28 @@ fn table() -> MutexGuard<'static, Table> {
     TABLE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The handle of a new solver.
-pub(super) fn create() -> Result<Handle> {
-    let slot = Arc::new(Slot::new());
+/// The handle of a new object.
+pub(super) fn create(object: Object) -> Result<Handle> {
+    let slot = Arc::new(Slot::new(object));
     table().insert(slot)
 }
 
-/// The place of a solver.
-pub(super) fn find(handle: Handle) -> Result<Arc<Slot>> {
-    let found = table().find(handle);
-    found.ok_or_else(|| no_solver(handle))
+/// The place of an object of a kind.
+pub(super) fn find<K: Kind>(handle: Handle) -> Result<Arc<Slot>> {
+    find_any(handle).filter(|slot| slot.name == K::NAME).ok_or_else(|| none::<K>(handle))
 }
 
-/// Deletes a solver that no other call is using.
-pub(super) fn delete(handle: Handle) -> Result<()> {
-    let slot = find(handle)?;
-    let mut state = slot.try_lock(handle)?;
+/// The place of an object.
+pub(super) fn find_any(handle: Handle) -> Option<Arc<Slot>> {
+    table().find(handle)
+}
+
+/// Deletes an object that no other call is using.
+pub(super) fn delete<K: Kind>(handle: Handle) -> Result<()> {
+    let slot = find::<K>(handle)?;
+    let mut state = slot.try_lock::<K>(handle)?;
     if matches!(*state, State::Deleted) {
-        return Err(no_solver(handle));
+        return Err(none::<K>(handle));
     }
     // Whoever found the slot before now and locks it later sees that it is deleted.
     *state = State::Deleted;
@@ -194,17 +249,22 @@ pub(super) fn delete(handle: Handle) -> Result<()> {
     Ok(())
 }
 
-fn no_solver(handle: Handle) -> Error {
+fn none<K: Kind>(handle: Handle) -> Error {
+    let what = K::NAME;
     let reason = match handle.0 {
-        0 => "expected a solver's handle, found null".to_owned(),
-        value => format!("expected a solver's handle, found {value:#x}, which was deleted or never was one"),
+        0 => format!("expected a {what}'s handle, found null"),
+        value => format!("expected a {what}'s handle, found {value:#x}, which was deleted or never was one"),
     };
-    Error::new(Status::InvalidHandle, reason).at("op")
+    Error::new(Status::InvalidHandle, reason).at(K::ARGUMENT)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn solver() -> Arc<Slot> {
+        Arc::new(Slot::new(Object::Solver(Box::default())))
+    }
 
     #[test]
     fn handles_are_small_nonzero_and_never_given_out_twice() {
@@ -212,7 +272,7 @@ mod tests {
         let mut seen = Vec::new();
         // 3 places of 4 generations each, then no more.
         for _ in 0..12 {
-            let handle = table.insert(Arc::new(Slot::new())).unwrap();
+            let handle = table.insert(solver()).unwrap();
             assert!(handle.0 != 0 && handle.0 < 1 << 31);
             assert!(!seen.contains(&handle));
             assert!(table.find(handle).is_some());
@@ -221,18 +281,18 @@ mod tests {
             assert!(table.remove(handle).is_none());
             seen.push(handle);
         }
-        assert_eq!(table.insert(Arc::new(Slot::new())).unwrap_err().status(), Status::TooLarge);
+        assert_eq!(table.insert(solver()).unwrap_err().status(), Status::TooLarge);
         assert!(seen.iter().all(|handle| table.find(*handle).is_none()));
     }
 
     #[test]
     fn freed_places_are_reused_in_the_order_they_were_freed() {
         let mut table = Table::new(8, LAST_GENERATION);
-        let handles: Vec<_> = (0..3).map(|_| table.insert(Arc::new(Slot::new())).unwrap()).collect();
+        let handles: Vec<_> = (0..3).map(|_| table.insert(solver()).unwrap()).collect();
         for i in [1, 0, 2] {
             table.remove(handles[i]);
         }
-        let reused: Vec<_> = (0..3).map(|_| table.insert(Arc::new(Slot::new())).unwrap().index()).collect();
+        let reused: Vec<_> = (0..3).map(|_| table.insert(solver()).unwrap().index()).collect();
         assert_eq!(reused, [1, 0, 2]);
     }
 

@@ -39,6 +39,8 @@ thread_local! {
     static SHOWN: RefCell<CString> = RefCell::default();
     /// The problem that was handed out last.
     static SHOWN_PROBLEM: RefCell<CString> = RefCell::default();
+    /// The text about surfaces that was handed out last.
+    static SHOWN_CANAL: RefCell<CString> = RefCell::default();
 }
 
 /// Keeps the message of a call with its solver.
@@ -55,7 +57,7 @@ pub(super) fn keep_for_thread(handle: Handle, error: Option<&Error>) {
 
 /// Replaces the empty message of a successful call on `handle` by what its caller should know.
 pub(super) fn keep_note(handle: Handle, note: &Error) {
-    if let Ok(slot) = handles::find(handle) {
+    if let Some(slot) = handles::find_any(handle) {
         keep(&slot.message, Some(note));
     }
     keep_for_thread(handle, Some(note));
@@ -66,7 +68,7 @@ pub(super) fn keep_note(handle: Handle, note: &Error) {
 fn last(handle: Handle) -> Message {
     let of_thread = LAST.try_with(|last| last.borrow().clone());
     let (own_handle, of_thread) = of_thread.unwrap_or((Handle::NONE, Message::default()));
-    let Ok(slot) = handles::find(handle) else { return of_thread };
+    let Some(slot) = handles::find_any(handle) else { return of_thread };
     let of_solver = slot.message.lock().unwrap_or_else(PoisonError::into_inner);
     let is_own_newer = of_solver.text.is_empty() || of_thread.order > of_solver.order;
     if own_handle == handle && is_own_newer { of_thread } else { of_solver.clone() }
@@ -85,6 +87,11 @@ pub(super) fn show_last(handle: Handle) -> *const c_char {
 /// The JSON form of a problem as C text that stays valid until this thread's next call; JSON holds no zero.
 pub(super) fn show_problem(json: String) -> *const c_char {
     show(&SHOWN_PROBLEM, json).unwrap_or(ptr::null())
+}
+
+/// A text about surfaces as C text that stays valid until this thread's next call for one.
+pub(super) fn show_canal(text: String) -> *const c_char {
+    show(&SHOWN_CANAL, text).unwrap_or(ptr::null())
 }
 
 /// Keeps `text` in a place of this thread; `None` if the thread is ending.

@@ -14,6 +14,7 @@
 #![allow(non_snake_case, non_camel_case_types, reason = "the names of libShapeOp's ABI")]
 
 mod arguments;
+mod canal;
 mod constraints;
 mod current;
 mod errors;
@@ -29,6 +30,7 @@ mod report;
 mod solver;
 mod structs;
 
+pub use canal::*;
 pub use constraints::*;
 pub use errors::*;
 pub use explore::*;
@@ -47,7 +49,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::error::{Error, Result, Status};
 use crate::solver::Solver;
-use handles::{Handle, State};
+use handles::{Handle, Kind, State};
 
 /// A call that was refused has left its message; this is the rest.
 type Refused<T> = std::result::Result<T, Status>;
@@ -56,10 +58,14 @@ type Refused<T> = std::result::Result<T, Status>;
 /// call is using, which includes every call from inside its own progress callback. Catches panics and keeps the
 /// message.
 fn guard<T>(op: *mut ShapeOpSolver, call: impl FnOnce(&mut Solver) -> Result<T>) -> Refused<T> {
-    let handle = Handle::new(op);
+    guard_object(Handle::new(op), call)
+}
+
+/// As [`guard`], for an object of any kind.
+fn guard_object<K: Kind, T>(handle: Handle, call: impl FnOnce(&mut K) -> Result<T>) -> Refused<T> {
     guard_named(handle, || {
-        let slot = handles::find(handle)?;
-        let mut state = slot.try_lock(handle)?;
+        let slot = handles::find::<K>(handle)?;
+        let mut state = slot.try_lock::<K>(handle)?;
         let result = state.run(handle, call);
         messages::keep(&slot.message, result.as_ref().err());
         result
@@ -90,7 +96,7 @@ fn guard_named<T>(handle: Handle, call: impl FnOnce() -> Result<T>) -> Refused<T
 
 /// A panic as an error of status `Internal`.
 fn catch<T>(call: impl FnOnce() -> Result<T>) -> Result<T> {
-    // Nothing that a panic may leave half-changed is used again: `State::run` drops the solver that it happened in.
+    // Nothing that a panic may leave half-changed is used again: `State::run` drops the object that it happened in.
     catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| Err(internal(&*panic)))
 }
 
@@ -101,10 +107,10 @@ fn internal(panic: &(dyn Any + Send)) -> Error {
 }
 
 impl State {
-    /// Runs `call` on the solver, unless an earlier panic made it unusable; a panic does.
-    fn run<T>(&mut self, handle: Handle, call: impl FnOnce(&mut Solver) -> Result<T>) -> Result<T> {
-        let solver = self.solver(handle)?;
-        let result = catch_unwind(AssertUnwindSafe(|| call(solver)));
+    /// Runs `call` on the object, unless an earlier panic made it unusable; a panic does.
+    fn run<K: Kind, T>(&mut self, handle: Handle, call: impl FnOnce(&mut K) -> Result<T>) -> Result<T> {
+        let object = self.object(handle)?;
+        let result = catch_unwind(AssertUnwindSafe(|| call(object)));
         result.unwrap_or_else(|panic| {
             *self = Self::Broken;
             Err(internal(&*panic))

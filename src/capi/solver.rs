@@ -2,11 +2,11 @@
 
 use std::ffi::{c_int, c_uint};
 
-use super::handles::{self, Handle, ShapeOpSolver};
+use super::handles::{self, Handle, Object, ShapeOpSolver};
 use super::{arguments, flag, guard, guard_named};
 use crate::error::{Error, Result, Status};
 use crate::problem::Acceleration;
-use crate::solver::LinearSolver;
+use crate::solver::{LinearSolver, Solver};
 
 /// Threads at most: far above what any problem gains from, and far below what would exhaust a machine.
 const MOST_THREADS: usize = 1024;
@@ -14,7 +14,7 @@ const MOST_THREADS: usize = 1024;
 /// Creates a solver without points. Null if 65536 solvers exist. Delete it with `shapeop_delete`.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_create() -> *mut ShapeOpSolver {
-    super::guard_free(handles::create).map_or(std::ptr::null_mut(), Handle::as_op)
+    super::guard_free(|| handles::create(Object::Solver(Box::default()))).map_or(std::ptr::null_mut(), Handle::as_op)
 }
 
 /// Deletes a solver and all it holds. Null does nothing; a busy solver is left alone, as is whatever is no solver.
@@ -22,7 +22,7 @@ pub extern "C" fn shapeop_create() -> *mut ShapeOpSolver {
 pub extern "C" fn shapeop_delete(op: *mut ShapeOpSolver) {
     if !op.is_null() {
         let handle = Handle::new(op);
-        let _ = guard_named(handle, || handles::delete(handle));
+        let _ = guard_named(handle, || handles::delete::<Solver>(handle));
     }
 }
 

@@ -106,10 +106,17 @@ pub fn decode(bytes: &[u8], format: Format, name: &str) -> Result<Source> {
         Format::Off => off::read(bytes),
         Format::PlyText | Format::Ply | Format::PlyBigEndian => ply::read(bytes),
     };
-    source.map_err(|refusal| {
-        let place = if refusal.line > 0 { format!("{name}:{}", refusal.line) } else { name.to_owned() };
-        Error::new(Status::InvalidInput, refusal.reason).at(place)
-    })
+    source.map_err(|refusal| refusal.in_file(name))
+}
+
+/// Reads the polylines of the contents of an OBJ file; `name` stands for it in errors. They are those of its `l` elements, of
+/// which consecutive ones that go on from vertex to vertex are one; without any, the one through all vertices in their order. A
+/// closed one repeats its first point.
+///
+/// # Errors
+/// As [`decode`]; an element of fewer than 2 vertices, or faces and no `l` element.
+pub fn decode_polylines(bytes: &[u8], name: &str) -> Result<Vec<Vec<DVec3>>> {
+    obj::read_polylines(bytes).map_err(|refusal| refusal.in_file(name))
 }
 
 /// The contents of a file with `mesh` in it.
@@ -171,6 +178,11 @@ impl Refusal {
     pub fn new(line: usize, reason: impl Into<String>) -> Self {
         Self { line, reason: reason.into() }
     }
+
+    fn in_file(self, name: &str) -> Error {
+        let place = if self.line > 0 { format!("{name}:{}", self.line) } else { name.to_owned() };
+        Error::new(Status::InvalidInput, self.reason).at(place)
+    }
 }
 
 /// Reads a finite number.
@@ -213,6 +225,21 @@ pub(super) fn shortened(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn polylines_of_an_obj_file_are_its_elements_or_all_vertices() {
+        let vertices = "v 0 0 0\nv 1 0 0 1\nv 1 1 0\n";
+        let read = |text: &str| decode_polylines(format!("{vertices}{text}").as_bytes(), "c.obj");
+        let points = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]].map(DVec3::from);
+        assert_eq!(read("# all\n").unwrap(), [points.to_vec()]);
+        assert_eq!(read("l 1 2\nl 2 3\nl -1 1/1\n").unwrap(), [[points.to_vec(), vec![points[0]]].concat()]);
+        assert_eq!(read("l 2 1\nl 3 2\n").unwrap(), [[points[1], points[0]], [points[2], points[1]]]);
+        let refusal = |text: &str| read(text).unwrap_err().to_string();
+        assert_eq!(refusal("l 1\n"), "c.obj:4: expected at least 2 vertices, found 1");
+        assert_eq!(refusal("\nl 1 4\n"), "c.obj:5: vertex 4 is out of range for 3 vertices");
+        assert_eq!(refusal("f 1 2 3\n"), "c.obj:4: expected a polyline \"l 1 2 3\", found a face: is it a mesh?");
+        assert_eq!(refusal("v 1 2\n"), "c.obj:4: expected 3 coordinates, found 2");
+    }
 
     #[test]
     fn the_extension_decides_in_any_case() {

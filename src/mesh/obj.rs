@@ -60,6 +60,57 @@ pub(super) fn read(bytes: &[u8]) -> Result<Source, Refusal> {
     Ok(source)
 }
 
+/// The polylines of `l` elements; consecutive ones that go on from vertex to vertex are one. Without any, that through all vertices.
+pub(super) fn read_polylines(bytes: &[u8]) -> Result<Vec<Vec<DVec3>>, Refusal> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut points = Vec::new();
+    let mut lines: Vec<(usize, Vec<u32>)> = Vec::new();
+    let mut first_face = None;
+    for Statement { line, text } in statements(&text) {
+        let mut words = text.split_whitespace();
+        match words.next() {
+            Some("v") => points.push(position(&mut words, line)?),
+            Some("f" | "fo") => first_face = first_face.or(Some(line)),
+            Some("l") => {
+                let indices =
+                    words.map(|word| corner(word, points.len(), line)).collect::<Result<Vec<u32>, Refusal>>()?;
+                if indices.len() < 2 {
+                    return Err(Refusal::new(line, format!("expected at least 2 vertices, found {}", indices.len())));
+                }
+                match lines.last_mut() {
+                    Some((_, before)) if before.last() == indices.first() => before.extend(&indices[1..]),
+                    _ => lines.push((line, indices)),
+                }
+            }
+            Some(keyword) if keyword.starts_with(|first: char| first.is_ascii_alphabetic()) => {}
+            Some(keyword) => {
+                let found = shortened(keyword);
+                return Err(Refusal::new(line, format!("expected a keyword such as v or l, found \"{found}\"")));
+            }
+            None => {}
+        }
+    }
+    if points.is_empty() {
+        return Err(Refusal::new(0, "expected lines \"v x y z\", found none: is it an OBJ file?"));
+    }
+    if lines.is_empty() {
+        return match first_face {
+            Some(line) => Err(Refusal::new(line, "expected a polyline \"l 1 2 3\", found a face: is it a mesh?")),
+            None => Ok(vec![points]),
+        };
+    }
+    let polyline = |(line, indices): (usize, Vec<u32>)| {
+        let at = |index: u32| {
+            points.get(index as usize).copied().ok_or_else(|| {
+                let reason = format!("vertex {} is out of range for {} vertices", u64::from(index) + 1, points.len());
+                Refusal::new(line, reason)
+            })
+        };
+        indices.into_iter().map(at).collect()
+    };
+    lines.into_iter().map(polyline).collect()
+}
+
 fn statements(text: &str) -> impl Iterator<Item = Statement> + '_ {
     let mut lines = text.split('\n').map(|line| line.strip_suffix('\r').unwrap_or(line)).zip(1..);
     std::iter::from_fn(move || {

@@ -125,6 +125,91 @@ namespace ShapeOp
         ThirdDifferences = 2,
     }
 
+    /// <summary>What the base of a surface is; it decides on the name of its family only.</summary>
+    public enum CanalKind
+    {
+        /// <summary>A canal surface: its sections are circles.</summary>
+        Canal = 0,
+        /// <summary>A surface of revolution.</summary>
+        Revolution = 1,
+        /// <summary>A moulding surface.</summary>
+        Moulding = 2,
+        /// <summary>Any circular net.</summary>
+        Circular = 3,
+    }
+
+    /// <summary>Why smoothing stopped.</summary>
+    public enum CanalStop
+    {
+        /// <summary>The gradient is as small as asked for.</summary>
+        Gradient = 0,
+        /// <summary>The value hardly falls any more.</summary>
+        Decrease = 1,
+        /// <summary>All iterations were used.</summary>
+        Iterations = 2,
+        /// <summary>No step lowers the value: it is as good as rounding allows, or at the border of what is feasible.</summary>
+        LineSearch = 3,
+        /// <summary>The callback said so.</summary>
+        Cancelled = 4,
+        /// <summary>The start is not feasible.</summary>
+        Infeasible = 5,
+    }
+
+    /// <summary>How points are spread over a curve.</summary>
+    public enum CanalSpacing
+    {
+        /// <summary>At equal lengths of the curve.</summary>
+        ArcLength = 0,
+        /// <summary>At equal steps of its parameter, the length of chords along the given points.</summary>
+        Parameter = 1,
+        /// <summary>The points that were given.</summary>
+        Points = 2,
+    }
+
+    /// <summary>Which part of a circle is meshed, from a point of it on.</summary>
+    public enum CanalSection
+    {
+        /// <summary>All of it; the mesh closes around it.</summary>
+        Whole = 0,
+        /// <summary>From the angle from_angle to to_angle, less than a full turn.</summary>
+        Angles = 1,
+        /// <summary>From the point to the one nearest to where the second curve passes.</summary>
+        ToCurve = 2,
+        /// <summary>What is above a plane.</summary>
+        Above = 3,
+    }
+
+    /// <summary>Which center of inversion an M-revolution surface takes: a point of the circle of centers, see shapeop_canalCenters.</summary>
+    public enum CanalCenter
+    {
+        /// <summary>The middle of the outer arc of the circle of centers.</summary>
+        Middle = 0,
+        /// <summary>
+        /// The point at the angle center_value, in radians, on the circle of centers: 0 is the middle of the inner arc, pi that of the
+        /// outer one.
+        /// </summary>
+        Angle = 1,
+        /// <summary>The point inside the given circle for which the parallel sides have the ratio center_value.</summary>
+        RatioInside = 2,
+        /// <summary>The point outside the given circle for which the parallel sides have the ratio center_value.</summary>
+        RatioOutside = 3,
+        /// <summary>The point center_point.</summary>
+        Point = 4,
+        /// <summary>On the chord from the rail's start to its end; for M-moulding surfaces.</summary>
+        Chord = 5,
+    }
+
+    /// <summary>What a transformation keeps.</summary>
+    public enum CanalStep
+    {
+        /// <summary>A similarity: the family.</summary>
+        Similarity = 0,
+        /// <summary>An inversion: circles and angles.</summary>
+        Moebius = 1,
+        /// <summary>A Combescure transformation: the directions of edges.</summary>
+        Combescure = 2,
+    }
+
     internal static class Native
     {
         internal const int AbiVersion = 1;
@@ -245,8 +330,106 @@ namespace ShapeOp
             internal int anchor_corners;
         }
 
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_canal_progress
+        {
+            internal uint struct_size;
+            internal uint iteration;
+            internal double fraction;
+            internal double value;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_canal_smooth_options
+        {
+            internal uint struct_size;
+            internal uint max_iterations;
+            internal int has_cone;
+            internal int turns_tangents;
+            internal double cone_axis_x;
+            internal double cone_axis_y;
+            internal double cone_axis_z;
+            internal double cone_angle;
+            internal double spacing_ratio;
+            internal double length_change;
+            internal double length_weight;
+            internal double half_angle;
+            internal double relative_gradient;
+            internal double relative_decrease;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_canal_smooth_report
+        {
+            internal uint struct_size;
+            internal CanalStop stop;
+            internal double before;
+            internal double after;
+            internal uint iterations;
+            internal uint reserved;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_canal_fit_options
+        {
+            internal uint struct_size;
+            internal int circle_count;
+            internal int column_count;
+            internal int spacing;
+            internal int section;
+            internal int is_long_way;
+            internal int has_normal;
+            internal int reserved;
+            internal double angle;
+            internal double normal_x;
+            internal double normal_y;
+            internal double normal_z;
+            internal double from_angle;
+            internal double to_angle;
+            internal double plane_x;
+            internal double plane_y;
+            internal double plane_z;
+            internal double up_x;
+            internal double up_y;
+            internal double up_z;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_canal_fit_report
+        {
+            internal uint struct_size;
+            internal int is_outward;
+            internal double deviation;
+            internal double residual;
+            internal double tangent_gap;
+            internal double closing_gap;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_canal_properties
+        {
+            internal uint struct_size;
+            internal uint face_count;
+            internal uint crossed_count;
+            internal uint flipped_count;
+            internal uint shrunk_count;
+            internal int has_planar_curves;
+            internal int is_isothermic_by_construction;
+            internal int has_stress_lines;
+            internal double planarity;
+            internal double concyclicity;
+            internal double rows_off_plane;
+            internal double columns_off_plane;
+            internal double cross_ratio_residual;
+            internal double stress_residual_coarse;
+            internal double stress_residual_fine;
+        }
+
         [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
         internal delegate int shapeop_progress_callback(ref shapeop_progress progress, IntPtr user);
+
+        [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+        internal delegate int shapeop_canal_progress_callback(ref shapeop_canal_progress progress, IntPtr user);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern IntPtr shapeop_version();
@@ -552,5 +735,771 @@ namespace ShapeOp
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern IntPtr shapeop_measureName(int index);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalCreate(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] frame,
+            int kind);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalFromJson(byte[] json);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalCopy(CanalHandle surface);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern void shapeop_canalDelete(IntPtr surface);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_canalText(CanalHandle surface);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_canalFamily(CanalHandle surface);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_canalKind(CanalHandle surface);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_canalChainCount(CanalHandle surface);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalSize(CanalHandle surface, int[] rows, int[] columns, int[] wraps);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalPoints(
+            CanalHandle surface,
+            double[] points,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalFrames(
+            CanalHandle surface,
+            double[] frames,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalBasePoints(
+            CanalHandle surface,
+            double[] points,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalRestoredPoints(
+            CanalHandle surface,
+            double[] points,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalInvert(CanalHandle surface, double[] center, double ratio);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalTranslate(CanalHandle surface, double[] vector);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalScale(CanalHandle surface, double factor);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalRotate(CanalHandle surface, double[] axis, double angle);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCombescureFactors(
+            CanalHandle surface,
+            double[] column,
+            int nbColumn,
+            double[] row,
+            int nbRow);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_canalUndo(CanalHandle surface);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalRefined(CanalHandle surface, int one, int two);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalRefinedAt(
+            CanalHandle surface,
+            double[] one,
+            int nbOne,
+            double[] two,
+            int nbTwo);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalEvaluate(
+            CanalHandle surface,
+            int i,
+            int j,
+            double u,
+            double v,
+            double[] point,
+            double[] frame);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalClosingGap(CanalHandle surface, double[] gap);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalMembraneResidual(CanalHandle surface, double[] residual);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalMembraneResidualOf(
+            CanalHandle surface,
+            double pressure,
+            double[] forcesOne,
+            double[] forcesTwo,
+            int nbFaces,
+            double[] residual);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCheckCircular(
+            double[] points,
+            int nbPoints,
+            int[] quads,
+            int nbQuads,
+            double[] planarity,
+            double[] concyclicity,
+            int[] isInOrder);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCheckParallel(
+            double[] a,
+            double[] b,
+            int nbPoints,
+            int[] edges,
+            int nbEdges,
+            double[] largestSine,
+            int[] reversedCount);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalGridLengths(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] column,
+            double[] row);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalPolylineLengths(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] columnPoints,
+            int nbColumnPoints,
+            double[] rowPoints,
+            int nbRowPoints,
+            double[] column,
+            double[] row);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCloseLengths(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] column,
+            int nbColumn,
+            double[] row,
+            int nbRow,
+            double[] outColumn,
+            double[] outRow);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCombescure(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] column,
+            int nbColumn,
+            double[] row,
+            int nbRow,
+            double[] origin,
+            double[] @out,
+            int[] reversedCount);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalParallelSpace(
+            double[] points,
+            int nbPoints,
+            int[] quads,
+            int nbQuads,
+            double[] basis,
+            int capacity,
+            int[] dimension);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalNearestParallel(
+            double[] points,
+            int nbPoints,
+            int[] quads,
+            int nbQuads,
+            int[] handles,
+            double[] targets,
+            int nbHandles,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalGridOfMesh(
+            double[] points,
+            int nbPoints,
+            int[] quads,
+            int nbQuads,
+            int component,
+            int[] gridCount,
+            int[] rows,
+            int[] columns,
+            int[] wraps,
+            int[] indices,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalFrameOfAngles(
+            double lambda,
+            double theta,
+            double psi,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalFrameOfTangent(
+            double[] tangent,
+            double[] normal,
+            int direction,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalFrameAcross(
+            double[] frame,
+            double[] edge,
+            int direction,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalGridFrames(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] frame,
+            double[] @out,
+            double[] closingGap);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalFolds(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] evoluteRatios,
+            int[] isNearEvolute,
+            double[] edgeRatios,
+            int[] faceFlags);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalInvertPoints(
+            double[] points,
+            int nbPoints,
+            double[] center,
+            double ratio,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalInvertComplex(
+            double[] points,
+            int nbPoints,
+            double[] center,
+            double ratio,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalInvertCircle(
+            double[] circle,
+            double[] center,
+            double ratio,
+            double[] @out,
+            int[] isLine);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalInvertSphere(
+            double[] sphereCenter,
+            double radius,
+            double[] center,
+            double ratio,
+            double[] @out,
+            int[] isPlane);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalInvertPlane(
+            double[] point,
+            double[] normal,
+            double[] center,
+            double ratio,
+            double[] @out,
+            int[] isPlane);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalDefaultSmoothOptions(ref shapeop_canal_smooth_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalSmooth(
+            double[] guide,
+            double[] border,
+            int nbPoints,
+            double[] frame,
+            ref shapeop_canal_smooth_options options,
+            shapeop_canal_progress_callback progress,
+            IntPtr user,
+            double[] outGuide,
+            double[] outBorder,
+            double[] parameters,
+            double[] outFrame,
+            double[] history,
+            int capacity,
+            int[] count,
+            ref shapeop_canal_smooth_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalStripEnergy(
+            double[] guide,
+            double[] border,
+            int nbPoints,
+            double[] frame,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalStrip(
+            double[] points,
+            int nbPoints,
+            double[] start,
+            double[] lengths,
+            uint flags,
+            double[] border,
+            double[] outLengths,
+            double[] attainable,
+            int[] isFlipped,
+            int[] isProjected,
+            double[] deviation);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalStripOfRadii(
+            double[] points,
+            int nbPoints,
+            double[] start,
+            double[] radii,
+            uint flags,
+            double[] border,
+            double[] outLengths,
+            int[] isFlipped);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalStripOfBorderEdges(
+            double[] points,
+            int nbPoints,
+            double[] start,
+            double[] edges,
+            double[] border,
+            double[] outLengths,
+            int[] isFlipped);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalLengthsBetween(
+            double[] points,
+            int nbPoints,
+            double first,
+            double last,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalEdgesOfBorder(
+            double[] points,
+            int nbPoints,
+            double length,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalStripCircles(
+            double[] guide,
+            double[] border,
+            int nbPoints,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalStripOfCircles(
+            double[] circles,
+            int nbCircles,
+            double[] start,
+            double[] end,
+            double[] guide,
+            double[] border,
+            double[] distance);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalHolonomy(
+            double[] points,
+            int nbPoints,
+            double[] matrix,
+            double[] residual,
+            int[] closes,
+            double[] tangent);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalClosedFrame(
+            double[] points,
+            int nbPoints,
+            double[] wish,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalParallelOnSphere(
+            double[] points,
+            int nbPoints,
+            double[] @out,
+            int capacity,
+            int[] count,
+            int[] reversedCount);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCloseCircles(
+            double[] firstCircle,
+            double[] lastCircle,
+            double[] start,
+            double[] guideFirst,
+            double[] guideLast,
+            double[] circle,
+            double[] first,
+            double[] last,
+            int[] whichCase,
+            int[] isCrossed);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCloseStrip(
+            double[] guide,
+            double[] border,
+            int nbPoints,
+            double[] last,
+            double[] outBorder,
+            double[] circle,
+            int[] whichCase,
+            int[] isFlipped);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalDefaultFitOptions(ref shapeop_canal_fit_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCurvePoints(
+            double[] points,
+            int nbPoints,
+            int isClosed,
+            int spacing,
+            double[] @out,
+            double[] tangents,
+            int nb);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalNormals(
+            double[] points,
+            double[] tangents,
+            int nbPoints,
+            int isClosed,
+            double angle,
+            double[] first,
+            double[] normals,
+            double[] frames);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalTouchingSpheres(
+            double[] points,
+            double[] normals,
+            int nbPoints,
+            double[] curve,
+            int nbCurve,
+            int isCurveClosed,
+            double[] spheres,
+            double[] offsets,
+            double[] feet,
+            int[] flags,
+            double[] residual);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCharacteristicCircles(
+            double[] spheres,
+            int nbSpheres,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalFit(
+            double[] guide,
+            int nbGuide,
+            int isGuideClosed,
+            double[] curve,
+            int nbCurve,
+            int isCurveClosed,
+            ref shapeop_canal_fit_options options,
+            double[] circles,
+            int circleCapacity,
+            int[] circleCount,
+            double[] spheres,
+            int[] sphereFlags,
+            int sphereCapacity,
+            int[] sphereCount,
+            ref shapeop_canal_fit_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalSectionPoints(
+            double[] circle,
+            double[] start,
+            double[] target,
+            ref shapeop_canal_fit_options options,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalMeshCircles(
+            double[] circles,
+            double[] guide,
+            int nbCircles,
+            double[] row,
+            int nbRow,
+            int wraps,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalColumn(
+            double[] circles,
+            int nbCircles,
+            double[] start,
+            double[] guide,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalRevolution(
+            double[] profile,
+            int nbProfile,
+            double[] axisPoint,
+            double[] axisDirection,
+            double angle,
+            int columns);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalMoulding(
+            double[] rail,
+            int nbRail,
+            double[] profile,
+            int nbProfile,
+            double[] obliquity,
+            int[] reversedCount,
+            double[] closingGap);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalMonge(
+            double[] rail,
+            int nbRail,
+            double[] profile,
+            int nbProfile,
+            double[] obliquity,
+            int[] reversedCount,
+            double[] closingGap);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalTranslation(
+            double[] rail,
+            int nbRail,
+            double[] profile,
+            int nbProfile,
+            double[] factors,
+            double[] points,
+            int capacity,
+            int[] count,
+            int[] rows,
+            int[] columns,
+            int[] wraps);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCenters(
+            double[] corners,
+            double[] circle,
+            double[] centers,
+            int[] isLine,
+            double[] ratioLimits);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalCenter(
+            double[] corners,
+            int centerKind,
+            double centerValue,
+            double[] centerPoint,
+            double[] center,
+            int[] isInfinite,
+            double[] omega,
+            double[] ratio);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalMRevolution(
+            double[] curve,
+            int nbCurve,
+            double[] p2,
+            double[] p3,
+            int centerKind,
+            double centerValue,
+            double[] centerPoint,
+            double[] up,
+            int columns,
+            double[] omega,
+            double[] axis);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalSphericalMRevolution(
+            double[] curve,
+            int nbCurve,
+            double[] p2,
+            double[] p3,
+            double[] sphereCenter,
+            double radius,
+            double[] pole,
+            int isOutside,
+            int centerKind,
+            double centerValue,
+            double[] centerPoint,
+            int columns,
+            double[] omega,
+            double[] axis);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalMMoulding(
+            double[] curve,
+            int nbCurve,
+            double[] rail,
+            int nbRail,
+            double[] p3,
+            int centerKind,
+            double centerValue,
+            double[] centerPoint,
+            double[] obliquity,
+            int[] reversedCount,
+            double[] closingGap,
+            double[] cornerGap);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalCCanal(
+            double[] guide,
+            int nbGuide,
+            double[] section,
+            int nbSection,
+            double[] lengths,
+            double[] curve,
+            int nbCurve,
+            int isCurveClosed,
+            int projectsLengths,
+            shapeop_canal_progress_callback progress,
+            IntPtr user,
+            double[] outLengths,
+            double[] deviations,
+            double[] attainable,
+            int[] isProjected,
+            int[] isCancelled);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_canalFamilyCount();
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_canalFamilyName(int index);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalFamilySteps(
+            byte[] name,
+            int[] kind,
+            int[] steps,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalProperties(CanalHandle surface, ref shapeop_canal_properties @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalNodeAxes(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] first,
+            double[] axes,
+            double[] gaps);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalNodeAxesOfLeastGaps(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            shapeop_canal_progress_callback progress,
+            IntPtr user,
+            double[] axes,
+            double[] gaps,
+            int[] isCancelled);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalNodeGaps(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] axes,
+            double height,
+            double[] gaps,
+            double[] depths);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalOffset(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] axes,
+            double distance,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalBeams(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] axes,
+            double height,
+            int[] nodes,
+            double[] corners,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalPanels(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] axes,
+            double thickness,
+            double[] outlines,
+            double[] lowerOutlines,
+            double[] mitres,
+            double[] circles,
+            double[] heights);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_canalPartsText(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] axes,
+            double thickness,
+            double height);
     }
 }

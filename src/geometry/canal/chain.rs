@@ -103,7 +103,7 @@ impl Transform {
                 Frame { t1, t2, normal: t1.cross(t2) }
             };
             let frames = net.frames().iter().enumerate().map(frame).collect();
-            Ok(Net::of_parts(grid.with_points(points)?, frames))
+            Ok(net.with_image(grid.with_points(points)?, frames))
         };
         let points = |image: &dyn Fn(DVec3) -> DVec3| grid.points().iter().map(|&point| image(point)).collect();
         match self {
@@ -116,7 +116,7 @@ impl Transform {
             Self::Rotation(turn) => moved(points(&|point| *turn * point), &|_, t| *turn * t),
             Self::Combescure { column, row } => {
                 let image = scaled_along(grid, column, row, pieces)?;
-                Ok(Net::of_parts(image, net.frames().to_vec()))
+                Ok(net.with_image(image, net.frames().to_vec()))
             }
         }
     }

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::chain::Transform;
-use super::frame::Frame;
+use super::frame::{Direction, Frame, Kink};
 use super::inversion::Inversion;
 use super::net::Net;
 use super::node_axes::NodeAxes;
@@ -36,11 +36,27 @@ pub struct SurfaceForm {
     pub wraps: [bool; 2],
     /// The unit tangents at point (0, 0): along the guide, along the section. The normal is their cross product.
     pub frame: [[f64; 3]; 2],
+    /// The rows, or the columns, along which the base is creased.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub kinks: Vec<KinkForm>,
     /// The points of the base, row by row: point (i, j) at `i * columns + j`.
     pub points: Vec<[f64; 3]>,
     /// The transformations, in the order in which they are applied.
     #[serde(default)]
     pub chain: Vec<LinkForm>,
+}
+
+/// A line along which a base is creased.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct KinkForm {
+    /// 1 for a row, which is crossed along the guide; 2 for a column.
+    pub direction: u8,
+    /// Which one, neither the first nor beyond the last.
+    pub line: usize,
+    /// By how much frames turn there about the line's tangent, in radians.
+    pub angle_rad: f64,
 }
 
 /// What a base is.
@@ -154,7 +170,19 @@ impl SuperCanal {
         let points = form.points.iter().map(|&point| DVec3::from_array(point)).collect();
         let [t1, t2] = form.frame.map(DVec3::from_array);
         let grid = Grid::new(points, form.rows, form.columns, form.wraps)?;
-        let base = Net::new(grid, Frame { t1, t2, normal: t1.cross(t2) })?;
+        let kink = |(k, form): (usize, &KinkForm)| {
+            let across = match form.direction {
+                1 => Direction::One,
+                2 => Direction::Two,
+                other => {
+                    let reason = format!("expected 1 or 2, found {other}");
+                    return Err(Error::new(Status::InvalidValue, reason).at("direction").at(format!("kinks[{k}]")));
+                }
+            };
+            Ok(Kink { across, line: form.line, angle_rad: form.angle_rad })
+        };
+        let kinks = form.kinks.iter().enumerate().map(kink).collect::<Result<Vec<_>>>()?;
+        let base = Net::with_kinks(grid, Frame { t1, t2, normal: t1.cross(t2) }, &kinks)?;
         let mut surface = Self::new(base, form.base.into());
         for (k, link) in form.chain.iter().enumerate() {
             let pushed = Transform::try_from(link).and_then(|transform| surface.push(transform));
@@ -174,6 +202,16 @@ impl SuperCanal {
             columns: grid.columns(),
             wraps: grid.wraps(),
             frame: [frame.t1, frame.t2].map(|tangent| tangent.to_array()),
+            kinks: self
+                .base()
+                .kinks()
+                .iter()
+                .map(|kink| KinkForm {
+                    direction: if kink.across == Direction::One { 1 } else { 2 },
+                    line: kink.line,
+                    angle_rad: kink.angle_rad,
+                })
+                .collect(),
             points: grid.points().iter().map(DVec3::to_array).collect(),
             chain: self.chain().iter().map(LinkForm::from).collect(),
         })
@@ -315,6 +353,19 @@ mod tests {
         assert_eq!(SuperCanal::from_json(&surface.to_json()).unwrap().to_json(), surface.to_json());
         let read = SuperCanal::from_json(&surface.to_json()).unwrap();
         assert_eq!(read.net().grid(), surface.net().grid());
+    }
+
+    #[test]
+    fn kinks_are_kept() {
+        let cyclide = Cyclide::new();
+        let kink = Kink { across: Direction::Two, line: 1, angle_rad: 0.25 };
+        let grid = cyclide.grid([0.2, 1.9], [-0.7, 1.3], 4, 3);
+        let base = Net::with_kinks(grid, cyclide.frame(0.2, -0.7), &[kink]).unwrap();
+        let surface = SuperCanal::new(base, BaseKind::Circular);
+        let text = surface.to_json();
+        assert_eq!(SuperCanal::from_json(&text).unwrap().base(), surface.base());
+        let wrong = SuperCanal::from_json(&text.replace("\"direction\": 2", "\"direction\": 3")).unwrap_err();
+        assert_eq!(wrong.place(), "kinks[0].direction");
     }
 
     #[test]

@@ -79,6 +79,26 @@ impl Frame {
         }
     }
 
+    /// Turned about `t1`, right-handed.
+    fn turned_about_one(self, angle_rad: f64) -> Self {
+        if angle_rad == 0.0 {
+            return self;
+        }
+        let (sine, cosine) = angle_rad.sin_cos();
+        let t2 = cosine * self.t2 + sine * self.normal;
+        Self { t1: self.t1, t2, normal: self.t1.cross(t2) }
+    }
+
+    /// Turned about `t2`, right-handed.
+    fn turned_about_two(self, angle_rad: f64) -> Self {
+        if angle_rad == 0.0 {
+            return self;
+        }
+        let (sine, cosine) = angle_rad.sin_cos();
+        let t1 = cosine * self.t1 - sine * self.normal;
+        Self { t1, t2: self.t2, normal: t1.cross(self.t2) }
+    }
+
     /// The columns `t1`, `t2`, `normal`.
     pub fn matrix(&self) -> DMat3 {
         DMat3::from_cols(self.t1, self.t2, self.normal)
@@ -102,20 +122,44 @@ impl Frame {
     }
 }
 
+/// A line of a net along which the surface is creased: it is continuous there, but its normals turn (C⁰ in the place of C¹).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kink {
+    /// The direction in which it is crossed: `Two` for a column, `One` for a row.
+    pub across: Direction,
+    /// The column or row, neither the first nor beyond the last.
+    pub line: usize,
+    /// By how much the frames of the next patches are turned about the line's tangent.
+    pub angle_rad: f64,
+}
+
 /// The frames at all points of a circular net, from that at point `(0, 0)`, row by row.
 ///
 /// # Errors
-/// `frame` is not right-handed and orthonormal. Status `NotCircular`: the frame does not come back to itself around a face; the
-/// place is `faces[i]`. Directions that wrap are not followed across the seam: see [`closing_gap`].
+/// As [`frames_with_kinks`].
 pub fn frames(grid: &Grid, frame: Frame) -> Result<Vec<Frame>> {
+    frames_with_kinks(grid, frame, &[])
+}
+
+/// The same for a net that is creased along columns, or along rows. The frame of a point is that of the patch whose first corner it is: on
+/// a kink, the one beyond it. Its tangent along the line is that of both sides, so neighbouring patches have their arc in common.
+/// (Turns about the tangents of both families do not commute: kinks of both would not close around the faces beyond them.)
+///
+/// # Errors
+/// `frame` is not right-handed and orthonormal; kinks of both families, of a line that does not exist, or with an angle that is not
+/// finite (`kinks[k]`). Status `NotCircular`: the frame does not come back to itself around a face; the
+/// place is `faces[i]`. Directions that wrap are not followed across the seam: see [`closing_gap`].
+pub fn frames_with_kinks(grid: &Grid, frame: Frame, kinks: &[Kink]) -> Result<Vec<Frame>> {
     frame.check("frame")?;
-    let frames = handed_on(grid, frame);
+    let turns = Turns::new(grid, kinks)?;
+    let frames = handed_on(grid, frame, &turns);
     let worst = (0..grid.rows() - 1)
         .flat_map(|i| (0..grid.columns() - 1).map(move |j| (i, j)))
         .map(|(i, j)| {
             // Down the columns is by construction; what can fail is the edge of the next row.
             let edge = grid.at(i + 1, j + 1) - grid.at(i + 1, j);
-            let across = frames[grid.index(i + 1, j)].across(edge, Direction::Two);
+            let across =
+                frames[grid.index(i + 1, j)].across(edge, Direction::Two).turned_about_one(turns.columns[j + 1]);
             (i * grid.spans()[1] + j, across.distance(&frames[grid.index(i + 1, j + 1)]))
         })
         .find(|(_, gap)| !(*gap <= NOT_CIRCULAR * (grid.rows() + grid.columns()) as f64));
@@ -128,18 +172,49 @@ pub fn frames(grid: &Grid, frame: Frame) -> Result<Vec<Frame>> {
     }
 }
 
+/// The turn at each row and column; 0 where there is no kink.
+pub(super) struct Turns {
+    rows: Vec<f64>,
+    columns: Vec<f64>,
+}
+
+impl Turns {
+    pub(super) fn none(grid: &Grid) -> Self {
+        Self { rows: vec![0.0; grid.rows()], columns: vec![0.0; grid.columns()] }
+    }
+
+    fn new(grid: &Grid, kinks: &[Kink]) -> Result<Self> {
+        let mut turns = Self::none(grid);
+        for (k, kink) in kinks.iter().enumerate() {
+            let refuse = |reason: String| Err(Error::new(Status::InvalidValue, reason).at(format!("kinks[{k}]")));
+            let lines = if kink.across == Direction::Two { &mut turns.columns } else { &mut turns.rows };
+            if kink.line == 0 || kink.line >= lines.len() {
+                return refuse(format!("expected a line from 1 to {}, found {}", lines.len() - 1, kink.line));
+            }
+            if !kink.angle_rad.is_finite() {
+                return refuse(format!("expected a finite angle, found {}", kink.angle_rad));
+            }
+            if kink.across != kinks[0].across {
+                return refuse("expected kinks of rows or of columns, found both".to_owned());
+            }
+            lines[kink.line] += kink.angle_rad;
+        }
+        Ok(turns)
+    }
+}
+
 /// Along row 0 and down the columns, unchecked.
-pub(super) fn handed_on(grid: &Grid, frame: Frame) -> Vec<Frame> {
+pub(super) fn handed_on(grid: &Grid, frame: Frame, turns: &Turns) -> Vec<Frame> {
     let mut frames = Vec::with_capacity(grid.points().len());
     frames.push(frame);
     for j in 1..grid.columns() {
         let edge = grid.at(0, j) - grid.at(0, j - 1);
-        frames.push(frames[j - 1].across(edge, Direction::Two));
+        frames.push(frames[j - 1].across(edge, Direction::Two).turned_about_one(turns.columns[j]));
     }
     for i in 1..grid.rows() {
         for j in 0..grid.columns() {
             let edge = grid.at(i, j) - grid.at(i - 1, j);
-            frames.push(frames[grid.index(i - 1, j)].across(edge, Direction::One));
+            frames.push(frames[grid.index(i - 1, j)].across(edge, Direction::One).turned_about_two(turns.rows[i]));
         }
     }
     frames
@@ -192,6 +267,43 @@ mod tests {
             let error = frames(&grid(lifted), frame).unwrap_err();
             assert_eq!((error.status(), error.place()), (Status::NotCircular, "faces[0]"));
         }
+    }
+
+    #[test]
+    fn kinks_turn_normals_about_their_line_and_close_around_every_face() {
+        let cyclide = crate::geometry::canal::cyclide::Cyclide::new();
+        let grid = cyclide.grid([0.2, 1.8], [-0.5, 1.0], 5, 6);
+        let smooth = frames(&grid, cyclide.frame(0.2, -0.5)).unwrap();
+        for (across, line) in [(Direction::Two, 3), (Direction::One, 2)] {
+            let kink = Kink { across, line, angle_rad: 0.4 };
+            let kinked = frames_with_kinks(&grid, smooth[0], &[kink]).unwrap();
+            for i in 0..5 {
+                for j in 0..6 {
+                    let (a, b) = (smooth[grid.index(i, j)], kinked[grid.index(i, j)]);
+                    let (at, along) = if across == Direction::Two { (j, a.t1 - b.t1) } else { (i, a.t2 - b.t2) };
+                    if at < line {
+                        assert!(a.distance(&b) < 1e-13);
+                    } else if at == line {
+                        assert!((a.normal.angle_between(b.normal) - 0.4).abs() < 1e-12 && along.length() < 1e-13);
+                    } else {
+                        assert!(a.normal.angle_between(b.normal) > 0.01);
+                    }
+                }
+            }
+            // Around the faces beyond the kink the frames close too: `frames_with_kinks` checked along rows; here along columns.
+            for (i, j) in (0..4).flat_map(|i| (1..6).map(move |j| (i, j))) {
+                let edge = grid.at(i + 1, j) - grid.at(i, j);
+                let down = kinked[grid.index(i, j)].across(edge, Direction::One);
+                let is_kink = across == Direction::One && i + 1 == line;
+                assert!(is_kink || down.distance(&kinked[grid.index(i + 1, j)]) < 1e-12);
+            }
+        }
+        let place = |kinks: &[Kink]| frames_with_kinks(&grid, smooth[0], kinks).unwrap_err().place().to_owned();
+        let kink = |across, line, angle_rad| Kink { across, line, angle_rad };
+        assert_eq!(place(&[kink(Direction::Two, 6, 0.1)]), "kinks[0]");
+        assert_eq!(place(&[kink(Direction::Two, 0, 0.1)]), "kinks[0]");
+        assert_eq!(place(&[kink(Direction::Two, 1, 0.1), kink(Direction::One, 1, 0.1)]), "kinks[1]");
+        assert_eq!(place(&[kink(Direction::One, 1, f64::NAN)]), "kinks[0]");
     }
 
     #[test]

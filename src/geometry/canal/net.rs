@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::frame::{self, Frame};
+use super::frame::{self, Direction, Frame, Kink};
 use super::patch::Patch;
 use crate::error::{Error, Result, Status};
 use crate::mesh::Grid;
@@ -18,6 +18,7 @@ const MOST_POINTS: usize = 1 << 26;
 pub struct Net {
     grid: Grid,
     frames: Vec<Frame>,
+    kinks: Vec<Kink>,
 }
 
 impl Net {
@@ -26,13 +27,21 @@ impl Net {
     /// # Errors
     /// As [`frame::frames`].
     pub fn new(grid: Grid, frame: Frame) -> Result<Self> {
-        let frames = frame::frames(&grid, frame)?;
-        Ok(Self { grid, frames })
+        Self::with_kinks(grid, frame, &[])
     }
 
-    /// A net of parts that are known to fit.
-    pub(super) fn of_parts(grid: Grid, frames: Vec<Frame>) -> Self {
-        Self { grid, frames }
+    /// The same, creased along some of its rows or columns: continuous there, but not smooth.
+    ///
+    /// # Errors
+    /// As [`frame::frames_with_kinks`].
+    pub fn with_kinks(grid: Grid, frame: Frame, kinks: &[Kink]) -> Result<Self> {
+        let frames = frame::frames_with_kinks(&grid, frame, kinks)?;
+        Ok(Self { grid, frames, kinks: kinks.to_vec() })
+    }
+
+    /// The image of this net: its points and frames.
+    pub(super) fn with_image(&self, grid: Grid, frames: Vec<Frame>) -> Self {
+        Self { grid, frames, kinks: self.kinks.clone() }
     }
 
     /// The points.
@@ -43,6 +52,11 @@ impl Net {
     /// The frame at each point, row by row.
     pub fn frames(&self) -> &[Frame] {
         &self.frames
+    }
+
+    /// The rows or columns along which it is creased.
+    pub fn kinks(&self) -> &[Kink] {
+        &self.kinks
     }
 
     /// The patch over face `(i, j)`.
@@ -162,7 +176,9 @@ impl Net {
             let reason = format!("lines of curvature come back {gap:e} off their start; the diagonal is {diagonal}");
             return Err(Error::new(Status::NotClosed, reason));
         }
-        Ok(Self { grid, frames })
+        let pieces = |across: Direction| counts[usize::from(across == Direction::Two)];
+        let kinks = self.kinks.iter().map(|kink| Kink { line: kink.line * pieces(kink.across), ..*kink });
+        Ok(Self { grid, frames, kinks: kinks.collect() })
     }
 }
 
@@ -222,6 +238,24 @@ mod tests {
         // Open, the same net is smooth.
         let open = Grid::new(net.grid.points().to_vec(), 7, 4, [false; 2]).unwrap();
         assert!(Net::new(open, turned).unwrap().refined(2, 2).is_ok());
+    }
+
+    #[test]
+    fn across_a_kink_a_refined_net_is_continuous_circular_and_creased() {
+        let cyclide = Cyclide::new();
+        let grid = cyclide.grid([0.1, 2.0], [-0.5, 1.0], 5, 5);
+        let kink = Kink { across: Direction::Two, line: 2, angle_rad: -0.5 };
+        let net = Net::with_kinks(grid, cyclide.frame(0.1, -0.5), &[kink]).unwrap();
+        let fine = net.refined(3, 4).unwrap();
+        let Quality { planarity, concyclicity, .. } = Quality::of(fine.grid());
+        assert!(largest(&planarity) < 1e-11 && largest(&concyclicity) < 1e-11);
+        let again = Net::with_kinks(fine.grid().clone(), fine.frames()[0], fine.kinks()).unwrap();
+        assert!(again.frames().iter().zip(fine.frames()).all(|(a, b)| a.distance(b) < 1e-11));
+        // On the cyclide before the kink, off it beyond.
+        for i in 0..fine.grid().rows() {
+            assert!((0..=8).all(|j| cyclide.distance(fine.grid().at(i, j)).abs() < 1e-12));
+            assert!((9..12).all(|j| cyclide.distance(fine.grid().at(i, j)).abs() > 1e-4));
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::frame::Frame;
+use super::frame::{self, Frame};
 use super::panels::edges;
 use crate::error::{Error, Result, Status, finite};
 use crate::linalg::bfgs;
@@ -140,7 +140,10 @@ fn direction(angles: &[f64]) -> DVec3 {
 /// Handed on along row 0 and down the columns. The sign of a tangent does not matter to a normal.
 fn axes(grid: &Grid, first: DVec3) -> Vec<DVec3> {
     let (t1, t2) = first.any_orthonormal_pair();
-    super::frame::handed_on(grid, Frame { t1, t2, normal: first }).into_iter().map(|frame| frame.normal).collect()
+    frame::handed_on(grid, Frame { t1, t2, normal: first }, &frame::Turns::none(grid))
+        .into_iter()
+        .map(|frame| frame.normal)
+        .collect()
 }
 
 /// The least and the greatest depth along each axis that beams of height 1 need.

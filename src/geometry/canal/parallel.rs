@@ -10,8 +10,20 @@ use glam::DVec3;
 
 use crate::error::{Error, Result, Status, finite};
 use crate::linalg::dense::{ROUND_OFF, Svd};
+use crate::linalg::least_squares::LeastSquares;
 use crate::mesh::grid::check_finite;
 use crate::mesh::{Grid, Mesh};
+
+/// In [`nearest_parallel`], the weight of staying where the mesh is against that of a handle: small, so that handles are met, yet
+/// above the round-off of the equations.
+const STAY: f64 = 1e-6;
+
+/// The weight of parallel edges there. Multipliers make them exact whatever it is; this one needs few rounds.
+const PARALLEL_WEIGHT: f64 = 1e3;
+
+/// Rounds of multipliers at most, and the sine of an edge's angle at which they end.
+const MOST_ROUNDS: usize = 100;
+const PARALLEL_SINE: f64 = 1e-12;
 
 /// Points up to which the space is computed: a dense decomposition of some thousand columns takes seconds.
 pub const MOST_POINTS: usize = 1000;
@@ -96,20 +108,12 @@ impl ParallelMeshes {
             let reason = format!("expected at most {MOST_POINTS} points, found {}", mesh.points.len());
             return Err(Error::new(Status::TooLarge, reason).at("points"));
         }
-        let topology = crate::mesh::Topology::new(mesh)?;
-        let edges = topology.edges();
+        let edges = edges_across(mesh)?;
         let mut columns = vec![vec![0.0; 2 * edges.len()]; 3 * mesh.points.len()];
-        for (row, &[a, b]) in edges.iter().enumerate() {
-            let edge = mesh.points[b as usize] - mesh.points[a as usize];
-            let Some(direction) = edge.try_normalize() else {
-                let reason = format!("the edge from point {a} to point {b} has no length");
-                return Err(Error::new(Status::Degenerate, reason).at("points"));
-            };
-            let (u, v) = direction.any_orthonormal_pair();
-            for (k, across) in [u, v].into_iter().enumerate() {
-                for (axis, entry) in across.to_array().into_iter().enumerate() {
-                    columns[3 * a as usize + axis][2 * row + k] = -entry;
-                    columns[3 * b as usize + axis][2 * row + k] = entry;
+        for (row, (edge, across)) in edges.iter().enumerate() {
+            for (k, across) in across.iter().enumerate() {
+                for (unknown, coefficient) in equation(*edge, *across) {
+                    columns[unknown as usize][2 * row + k] = coefficient;
                 }
             }
         }
@@ -137,13 +141,7 @@ impl ParallelMeshes {
     /// # Errors
     /// A point out of range, or a target that is not finite.
     pub fn nearest(&self, handles: &[(usize, DVec3)]) -> Result<Vec<DVec3>> {
-        for (k, (point, target)) in handles.iter().enumerate() {
-            if *point >= self.points.len() {
-                let reason = format!("{point} is out of range for {} points", self.points.len());
-                return Err(Error::new(Status::IndexOutOfRange, reason).at(format!("handles[{k}]")));
-            }
-            target.to_array().iter().try_for_each(|&x| finite(&format!("handles[{k}]"), x).map(|_| ()))?;
-        }
+        check_handles(handles, self.points.len())?;
         if handles.is_empty() || self.basis.is_empty() {
             return Ok(self.points.clone());
         }
@@ -165,6 +163,92 @@ impl ParallelMeshes {
         check_finite("points", &points)?;
         Ok(points)
     }
+}
+
+fn check_handles(handles: &[(usize, DVec3)], point_count: usize) -> Result<()> {
+    for (k, (point, target)) in handles.iter().enumerate() {
+        if *point >= point_count {
+            let reason = format!("{point} is out of range for {point_count} points");
+            return Err(Error::new(Status::IndexOutOfRange, reason).at(format!("handles[{k}]")));
+        }
+        target.to_array().iter().try_for_each(|&x| finite(&format!("handles[{k}]"), x).map(|_| ()))?;
+    }
+    Ok(())
+}
+
+/// The edges of a mesh, each with two unit vectors that are orthogonal to it and to each other.
+fn edges_across(mesh: &Mesh) -> Result<Vec<([u32; 2], [DVec3; 2])>> {
+    let topology = crate::mesh::Topology::new(mesh)?;
+    let across = |&[a, b]: &[u32; 2]| {
+        let edge = mesh.points[b as usize] - mesh.points[a as usize];
+        let (u, v) = edge.try_normalize().map(DVec3::any_orthonormal_pair).ok_or_else(|| {
+            let reason = format!("the edge from point {a} to point {b} has no length");
+            Error::new(Status::Degenerate, reason).at("points")
+        })?;
+        Ok(([a, b], [u, v]))
+    };
+    topology.edges().iter().map(across).collect()
+}
+
+/// `across · (x_b − x_a)`, with the coordinates `x0 y0 z0 x1 …` as unknowns.
+fn equation([a, b]: [u32; 2], across: DVec3) -> [(u32, f64); 6] {
+    let entry = |k: usize| {
+        let (point, sign) = if k < 3 { (a, -1.0) } else { (b, 1.0) };
+        (3 * point + k as u32 % 3, sign * across[k % 3])
+    };
+    std::array::from_fn(entry)
+}
+
+/// The parallel mesh whose given points are near their targets, for a mesh of quads of any size, closed or not:
+/// `Σ ‖x'_h − target‖² + 10⁻⁶ ‖x' − x‖²` is least among all parallel meshes. Sparse least squares with multipliers for the
+/// directions of edges, until these are parallel to 1e-12; 100 rounds at most, after which they are as parallel as they got.
+///
+/// # Errors
+/// As [`ParallelMeshes::of`], but for the number of points, and [`ParallelMeshes::nearest`].
+pub fn nearest_parallel(mesh: &Mesh, handles: &[(usize, DVec3)]) -> Result<Vec<DVec3>> {
+    mesh.check_polygons()?;
+    quads(mesh)?;
+    check_handles(handles, mesh.points.len())?;
+    let edges = edges_across(mesh)?;
+    let diagonal = mesh.diagonal();
+    let root = PARALLEL_WEIGHT.sqrt();
+    let mut multipliers = vec![0.0; 2 * edges.len()];
+    // Unknowns are moves, in units of the diagonal.
+    let mut moves = vec![DVec3::ZERO; mesh.points.len()];
+    for _ in 0..MOST_ROUNDS {
+        let mut system = LeastSquares::new(3 * mesh.points.len());
+        for unknown in 0..3 * mesh.points.len() as u32 {
+            system.add(&[(unknown, STAY.sqrt())], 0.0);
+        }
+        for &(point, target) in handles {
+            let wanted = (target - mesh.points[point]) / diagonal;
+            (0..3).for_each(|axis| system.add(&[(3 * point as u32 + axis, 1.0)], wanted[axis as usize]));
+        }
+        // The source's own edges are parallel to themselves, so what must vanish is that of the moves.
+        for (row, (edge, across)) in edges.iter().enumerate() {
+            for (k, across) in across.iter().enumerate() {
+                let entries = equation(*edge, *across).map(|(unknown, value)| (unknown, root * value));
+                system.add(&entries, -multipliers[2 * row + k] / root);
+            }
+        }
+        moves = system.solve()?.chunks_exact(3).map(DVec3::from_slice).collect();
+        let mut worst = 0.0_f64;
+        for (row, ([a, b], across)) in edges.iter().enumerate() {
+            let moved = moves[*b as usize] - moves[*a as usize];
+            let length = (mesh.points[*b as usize] - mesh.points[*a as usize]).length() / diagonal;
+            for (k, across) in across.iter().enumerate() {
+                let off = across.dot(moved);
+                multipliers[2 * row + k] += PARALLEL_WEIGHT * off;
+                worst = worst.max(off.abs() / length);
+            }
+        }
+        if worst <= PARALLEL_SINE {
+            break;
+        }
+    }
+    let points: Vec<DVec3> = mesh.points.iter().zip(&moves).map(|(&point, &moved)| point + diagonal * moved).collect();
+    check_finite("points", &points)?;
+    Ok(points)
 }
 
 #[cfg(test)]
@@ -207,6 +291,27 @@ mod tests {
         assert!(check_parallel(&grid, &grid.with_points(found).unwrap()).unwrap().largest_sine < 1e-9);
         assert_eq!(space.nearest(&[]).unwrap(), grid.points());
         assert_eq!(space.nearest(&[(20, DVec3::ZERO)]).unwrap_err().place(), "handles[0]");
+    }
+
+    #[test]
+    fn large_and_closed_meshes_follow_handles_too() {
+        let cyclide = Cyclide::new();
+        // A small one: as the dense space says, up to the weight of staying.
+        let grid = cyclide.grid([0.2, 1.8], [-0.6, 1.2], 4, 5);
+        let handles = [(0, grid.at(0, 0)), (19, grid.at(3, 4) + DVec3::new(0.1, 0.05, -0.1)), (4, grid.at(0, 4))];
+        let dense = ParallelMeshes::of(&grid.mesh()).unwrap().nearest(&handles).unwrap();
+        let sparse = nearest_parallel(&grid.mesh(), &handles).unwrap();
+        for (a, b) in dense.iter().zip(&sparse) {
+            assert!(a.distance(*b) < 1e-4, "{}", a.distance(*b));
+        }
+        // A torus of 1600 points, a point of which is pulled.
+        let grid = cyclide.grid([0.0, TAU], [0.0, TAU], 40, 40);
+        let handles = [(0, grid.at(0, 0)), (820, grid.at(20, 20) + DVec3::new(0.05, 0.0, 0.1))];
+        let found = grid.with_points(nearest_parallel(&grid.mesh(), &handles).unwrap()).unwrap();
+        let parallel = check_parallel(&grid, &found).unwrap();
+        assert!(parallel.largest_sine < 1e-9, "{}", parallel.largest_sine);
+        assert!(handles.iter().all(|&(point, target)| found.points()[point].distance(target) < 1e-3));
+        assert_eq!(nearest_parallel(&grid.mesh(), &[(1600, DVec3::ZERO)]).unwrap_err().place(), "handles[0]");
     }
 
     #[test]

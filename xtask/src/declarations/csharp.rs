@@ -53,7 +53,7 @@ fn signature(function: &Function, declarations: &Declarations) -> String {
     let arguments: Vec<String> = function.arguments.iter().map(argument).collect();
     let result = match &function.returns {
         Type::Void => "void".to_owned(),
-        Type::Handle => "SolverHandle".to_owned(),
+        Type::Handle(name) => handle(name),
         other => stored(other, declarations),
     };
     let line = format!("{result} {}({})", function.name, arguments.join(", "));
@@ -71,7 +71,7 @@ fn stored(type_: &Type, declarations: &Declarations) -> String {
         Type::Double => "double".to_owned(),
         Type::Named(name) if declarations.is_enum(name) => pascal(name),
         Type::Named(name) => name.clone(),
-        Type::Void | Type::Text | Type::Handle | Type::Anything | Type::Pointer(_) => "IntPtr".to_owned(),
+        Type::Void | Type::Text | Type::Handle(_) | Type::Anything | Type::Pointer(_) => "IntPtr".to_owned(),
     }
 }
 
@@ -80,14 +80,19 @@ fn passed(function: &Function, type_: &Type, declarations: &Declarations) -> Str
     match type_ {
         Type::Text => "byte[]".to_owned(),
         // What releases a handle has no handle any more.
-        Type::Handle if function.name == "shapeop_delete" => "IntPtr".to_owned(),
-        Type::Handle => "SolverHandle".to_owned(),
+        Type::Handle(_) if function.name.to_lowercase().ends_with("delete") => "IntPtr".to_owned(),
+        Type::Handle(name) => handle(name),
         Type::Pointer(to) => match &**to {
             Type::Named(name) => format!("ref {name}"),
             other => format!("{}[]", stored(other, declarations)),
         },
         other => stored(other, declarations),
     }
+}
+
+/// The class that keeps a handle: `ShapeOpSolver` is in a `SolverHandle`.
+fn handle(name: &str) -> String {
+    format!("{}Handle", name.trim_start_matches("ShapeOp"))
 }
 
 /// `<summary>` of a doc comment.

@@ -59,8 +59,8 @@ enum Type {
     Double,
     /// `const char *`.
     Text,
-    /// `ShapeOpSolver *`.
-    Handle,
+    /// `ShapeOpSolver *`, or a pointer to another kind of object.
+    Handle(String),
     /// `void *`.
     Anything,
     /// A pointer to one or many.
@@ -141,7 +141,7 @@ impl Type {
             let is_const = pointer.const_token.is_some();
             return Ok(match last_segment(to).as_deref() {
                 Some("c_char") if is_const => Self::Text,
-                Some("ShapeOpSolver") => Self::Handle,
+                Some(name) if name.starts_with("ShapeOp") => Self::Handle(name.to_owned()),
                 Some("c_void") => Self::Anything,
                 _ => Self::Pointer(Box::new(Self::of(to)?)),
             });

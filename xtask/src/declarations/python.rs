@@ -71,7 +71,7 @@ fn name_of(type_: &Type, declarations: &Declarations) -> String {
         Type::UnsignedInt => "c_uint".to_owned(),
         Type::Double => "c_double".to_owned(),
         Type::Text => "c_char_p".to_owned(),
-        Type::Handle | Type::Anything => "c_void_p".to_owned(),
+        Type::Handle(_) | Type::Anything => "c_void_p".to_owned(),
         Type::Pointer(to) => format!("POINTER({})", name_of(to, declarations)),
         Type::Named(name) if declarations.is_enum(name) => "c_int".to_owned(),
         Type::Named(name) => name.clone(),

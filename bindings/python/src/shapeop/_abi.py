@@ -63,6 +63,44 @@ SO_FAIRNESS_LAPLACIAN = 0
 SO_FAIRNESS_SECOND_DIFFERENCES = 1
 SO_FAIRNESS_THIRD_DIFFERENCES = 2
 
+# shapeop_canal_kind
+SO_CANAL_CANAL = 0
+SO_CANAL_REVOLUTION = 1
+SO_CANAL_MOULDING = 2
+SO_CANAL_CIRCULAR = 3
+
+# shapeop_canal_stop
+SO_CANAL_STOP_GRADIENT = 0
+SO_CANAL_STOP_DECREASE = 1
+SO_CANAL_STOP_ITERATIONS = 2
+SO_CANAL_STOP_LINE_SEARCH = 3
+SO_CANAL_STOP_CANCELLED = 4
+SO_CANAL_STOP_INFEASIBLE = 5
+
+# shapeop_canal_spacing
+SO_CANAL_SPACING_ARC_LENGTH = 0
+SO_CANAL_SPACING_PARAMETER = 1
+SO_CANAL_SPACING_POINTS = 2
+
+# shapeop_canal_section
+SO_CANAL_SECTION_WHOLE = 0
+SO_CANAL_SECTION_ANGLES = 1
+SO_CANAL_SECTION_TO_CURVE = 2
+SO_CANAL_SECTION_ABOVE = 3
+
+# shapeop_canal_center
+SO_CANAL_CENTER_MIDDLE = 0
+SO_CANAL_CENTER_ANGLE = 1
+SO_CANAL_CENTER_RATIO_INSIDE = 2
+SO_CANAL_CENTER_RATIO_OUTSIDE = 3
+SO_CANAL_CENTER_POINT = 4
+SO_CANAL_CENTER_CHORD = 5
+
+# shapeop_canal_step
+SO_CANAL_STEP_SIMILARITY = 0
+SO_CANAL_STEP_MOEBIUS = 1
+SO_CANAL_STEP_COMBESCURE = 2
+
 
 class shapeop_constraint_type(ctypes.Structure):
     _fields_ = [
@@ -179,7 +217,103 @@ class shapeop_recipe_options(ctypes.Structure):
     ]
 
 
+class shapeop_canal_progress(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("iteration", c_uint),
+        ("fraction", c_double),
+        ("value", c_double),
+    ]
+
+
+class shapeop_canal_smooth_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("max_iterations", c_uint),
+        ("has_cone", c_int),
+        ("turns_tangents", c_int),
+        ("cone_axis_x", c_double),
+        ("cone_axis_y", c_double),
+        ("cone_axis_z", c_double),
+        ("cone_angle", c_double),
+        ("spacing_ratio", c_double),
+        ("length_change", c_double),
+        ("length_weight", c_double),
+        ("half_angle", c_double),
+        ("relative_gradient", c_double),
+        ("relative_decrease", c_double),
+    ]
+
+
+class shapeop_canal_smooth_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("stop", c_int),
+        ("before", c_double),
+        ("after", c_double),
+        ("iterations", c_uint),
+        ("reserved", c_uint),
+    ]
+
+
+class shapeop_canal_fit_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("circle_count", c_int),
+        ("column_count", c_int),
+        ("spacing", c_int),
+        ("section", c_int),
+        ("is_long_way", c_int),
+        ("has_normal", c_int),
+        ("reserved", c_int),
+        ("angle", c_double),
+        ("normal_x", c_double),
+        ("normal_y", c_double),
+        ("normal_z", c_double),
+        ("from_angle", c_double),
+        ("to_angle", c_double),
+        ("plane_x", c_double),
+        ("plane_y", c_double),
+        ("plane_z", c_double),
+        ("up_x", c_double),
+        ("up_y", c_double),
+        ("up_z", c_double),
+    ]
+
+
+class shapeop_canal_fit_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("is_outward", c_int),
+        ("deviation", c_double),
+        ("residual", c_double),
+        ("tangent_gap", c_double),
+        ("closing_gap", c_double),
+    ]
+
+
+class shapeop_canal_properties(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("face_count", c_uint),
+        ("crossed_count", c_uint),
+        ("flipped_count", c_uint),
+        ("shrunk_count", c_uint),
+        ("has_planar_curves", c_int),
+        ("is_isothermic_by_construction", c_int),
+        ("has_stress_lines", c_int),
+        ("planarity", c_double),
+        ("concyclicity", c_double),
+        ("rows_off_plane", c_double),
+        ("columns_off_plane", c_double),
+        ("cross_ratio_residual", c_double),
+        ("stress_residual_coarse", c_double),
+        ("stress_residual_fine", c_double),
+    ]
+
+
 shapeop_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_progress), c_void_p)
+shapeop_canal_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_canal_progress), c_void_p)
 
 # What each function returns, and what it takes.
 FUNCTIONS = {
@@ -304,6 +438,715 @@ FUNCTIONS = {
     ),
     "shapeop_measureCount": (c_int, []),
     "shapeop_measureName": (c_char_p, [c_int]),
+    "shapeop_canalCreate": (c_void_p, [POINTER(c_double), c_int, c_int, c_int, POINTER(c_double), c_int]),
+    "shapeop_canalFromJson": (c_void_p, [c_char_p]),
+    "shapeop_canalCopy": (c_void_p, [c_void_p]),
+    "shapeop_canalDelete": (None, [c_void_p]),
+    "shapeop_canalText": (c_char_p, [c_void_p]),
+    "shapeop_canalFamily": (c_char_p, [c_void_p]),
+    "shapeop_canalKind": (c_int, [c_void_p]),
+    "shapeop_canalChainCount": (c_int, [c_void_p]),
+    "shapeop_canalSize": (c_int, [c_void_p, POINTER(c_int), POINTER(c_int), POINTER(c_int)]),
+    "shapeop_canalPoints": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_canalFrames": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_canalBasePoints": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_canalRestoredPoints": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_canalInvert": (c_int, [c_void_p, POINTER(c_double), c_double]),
+    "shapeop_canalTranslate": (c_int, [c_void_p, POINTER(c_double)]),
+    "shapeop_canalScale": (c_int, [c_void_p, c_double]),
+    "shapeop_canalRotate": (c_int, [c_void_p, POINTER(c_double), c_double]),
+    "shapeop_canalCombescureFactors": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_double), c_int]),
+    "shapeop_canalUndo": (c_int, [c_void_p]),
+    "shapeop_canalRefined": (c_void_p, [c_void_p, c_int, c_int]),
+    "shapeop_canalRefinedAt": (c_void_p, [c_void_p, POINTER(c_double), c_int, POINTER(c_double), c_int]),
+    "shapeop_canalEvaluate": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            c_int,
+            c_double,
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalClosingGap": (c_int, [c_void_p, POINTER(c_double)]),
+    "shapeop_canalMembraneResidual": (c_int, [c_void_p, POINTER(c_double)]),
+    "shapeop_canalMembraneResidualOf": (
+        c_int,
+        [
+            c_void_p,
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalCheckCircular": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalCheckParallel": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalGridLengths": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalPolylineLengths": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalCloseLengths": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalCombescure": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalParallelSpace": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalNearestParallel": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalGridOfMesh": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+            POINTER(c_int),
+            POINTER(c_int),
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalFrameOfAngles": (c_int, [c_double, c_double, c_double, POINTER(c_double)]),
+    "shapeop_canalFrameOfTangent": (c_int, [POINTER(c_double), POINTER(c_double), c_int, POINTER(c_double)]),
+    "shapeop_canalFrameAcross": (c_int, [POINTER(c_double), POINTER(c_double), c_int, POINTER(c_double)]),
+    "shapeop_canalGridFrames": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalFolds": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_double),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalInvertPoints": (c_int, [POINTER(c_double), c_int, POINTER(c_double), c_double, POINTER(c_double)]),
+    "shapeop_canalInvertComplex": (c_int, [POINTER(c_double), c_int, POINTER(c_double), c_double, POINTER(c_double)]),
+    "shapeop_canalInvertCircle": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            c_double,
+            POINTER(c_double),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalInvertSphere": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_double,
+            POINTER(c_double),
+            c_double,
+            POINTER(c_double),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalInvertPlane": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            c_double,
+            POINTER(c_double),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalDefaultSmoothOptions": (c_int, [POINTER(shapeop_canal_smooth_options)]),
+    "shapeop_canalSmooth": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(shapeop_canal_smooth_options),
+            shapeop_canal_progress_callback,
+            c_void_p,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(shapeop_canal_smooth_report),
+        ],
+    ),
+    "shapeop_canalStripEnergy": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalStrip": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_uint,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_int),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalStripOfRadii": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_uint,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalStripOfBorderEdges": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalLengthsBetween": (c_int, [POINTER(c_double), c_int, c_double, c_double, POINTER(c_double)]),
+    "shapeop_canalEdgesOfBorder": (c_int, [POINTER(c_double), c_int, c_double, POINTER(c_double)]),
+    "shapeop_canalStripCircles": (c_int, [POINTER(c_double), POINTER(c_double), c_int, POINTER(c_double)]),
+    "shapeop_canalStripOfCircles": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalHolonomy": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalClosedFrame": (c_int, [POINTER(c_double), c_int, POINTER(c_double), POINTER(c_double)]),
+    "shapeop_canalParallelOnSphere": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalCloseCircles": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalCloseStrip": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalDefaultFitOptions": (c_int, [POINTER(shapeop_canal_fit_options)]),
+    "shapeop_canalCurvePoints": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+        ],
+    ),
+    "shapeop_canalNormals": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalTouchingSpheres": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalCharacteristicCircles": (c_int, [POINTER(c_double), c_int, POINTER(c_double)]),
+    "shapeop_canalFit": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_int,
+            c_int,
+            POINTER(shapeop_canal_fit_options),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_double),
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+            POINTER(shapeop_canal_fit_report),
+        ],
+    ),
+    "shapeop_canalSectionPoints": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(shapeop_canal_fit_options),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalMeshCircles": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            c_int,
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalColumn": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalRevolution": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_double,
+            c_int,
+        ],
+    ),
+    "shapeop_canalMoulding": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalMonge": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalTranslation": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+            POINTER(c_int),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalCenters": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalCenter": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalMRevolution": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalSphericalMRevolution": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            c_double,
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_double,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalMMoulding": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalCCanal": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            shapeop_canal_progress_callback,
+            c_void_p,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalFamilyCount": (c_int, []),
+    "shapeop_canalFamilyName": (c_char_p, [c_int]),
+    "shapeop_canalFamilySteps": (c_int, [c_char_p, POINTER(c_int), POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_canalProperties": (c_int, [c_void_p, POINTER(shapeop_canal_properties)]),
+    "shapeop_canalNodeAxes": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalNodeAxesOfLeastGaps": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            shapeop_canal_progress_callback,
+            c_void_p,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalNodeGaps": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalOffset": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_double,
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalBeams": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_double,
+            POINTER(c_int),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_canalPanels": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_canalPartsText": (
+        c_char_p,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_double,
+            c_double,
+        ],
+    ),
 }
 
 

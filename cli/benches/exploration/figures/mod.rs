@@ -14,7 +14,7 @@ use anyhow::Result;
 use glam::DVec3;
 use shapeop::mesh::Mesh;
 use shapeop_cli::colours::Scale;
-use shapeop_cli::picture::{On, Panel, Picture};
+use shapeop_cli::picture::{On, Overlay, Panel, Picture};
 use shapeop_cli::raster;
 
 use crate::group::Group;
@@ -89,6 +89,7 @@ impl Kept {
             pointed_at: None,
             caption: self.caption.clone(),
             handles: self.handles.clone(),
+            overlay: Overlay::default(),
         }
     }
 
