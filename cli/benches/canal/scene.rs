@@ -1,6 +1,7 @@
 //! Drawings of surfaces with curves, circles and spheres, several views side by side.
 //!
-//! Everything is drawn from the farthest to the nearest part (painter's algorithm); lines lie a little nearer than they are, so
+//! Everything is drawn from the farthest to the nearest part (painter's algorithm); lines lie a little nearer than
+//! they are, so
 //! that those on a surface are seen.
 
 use std::path::Path;

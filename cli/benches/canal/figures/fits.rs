@@ -226,7 +226,9 @@ pub fn figure25(folder: &Path) -> Result<Group> {
     let words = format!("{} of {} rows near the evolute", folds.rows_near_evolute.len(), fit.grid.rows());
     let scene = Scene {
         title: "Fig. 25: lines of curvature concentrate near the evolute".to_owned(),
-        subtitle: "Red panels: sections that reach beyond 80 % of the way to the evolute of the guide curve, which is warned of".to_owned(),
+        subtitle: "Red panels: sections that reach beyond 80 % of the way to the evolute of the guide curve, \
+            which is warned of"
+            .to_owned(),
         columns: 2,
         views: vec![view("the surface", 32.0).caption(words), plan],
     };

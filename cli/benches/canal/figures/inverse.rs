@@ -75,7 +75,9 @@ pub fn figure20(folder: &Path) -> Result<Group> {
         View::new("its base, a surface of revolution", 12.0, 34.0).grid(base, WHITE).line(&base.column(0), ORANGE, 3.6);
     let scene = Scene {
         title: "Fig. 20: a surface from the inversion of a surface of revolution".to_owned(),
-        subtitle: "Given: the planar curve (orange) and two points (blue) on a circle with its ends; the arches are vertical circles".to_owned(),
+        subtitle: "Given: the planar curve (orange) and two points (blue) on a circle with its ends; the arches \
+            are vertical circles"
+            .to_owned(),
         columns: 2,
         views: vec![start, result],
     };
@@ -139,7 +141,7 @@ pub fn figure21(folder: &Path) -> Result<Group> {
 }
 
 pub fn figure22(folder: &Path) -> Result<Group> {
-    let (mut surface, _) = (c_canal_of(&ellipse(6, 0.62), |_| 1.0)?.0.surface, ());
+    let mut surface = c_canal_of(&ellipse(6, 0.62), |_| 1.0)?.0.surface;
     let grid = surface.net().grid();
     let center = grid.at(12, 3) + 2.4 * grid.diagonal() * DVec3::new(-0.3, 0.2, 0.5);
     surface.push(Transform::Inversion(Inversion::new(center, grid.diagonal().powi(2))?))?;
@@ -167,7 +169,9 @@ pub fn figure22(folder: &Path) -> Result<Group> {
     }
     let scene = Scene {
         title: "Fig. 22: remeshing at three densities".to_owned(),
-        subtitle: "An MC-canal surface; all points of the coarse mesh stay where they are; orange: the guide, blue: the section".to_owned(),
+        subtitle: "An MC-canal surface; all points of the coarse mesh stay where they are; orange: the guide, \
+            blue: the section"
+            .to_owned(),
         columns: 3,
         views,
     };
