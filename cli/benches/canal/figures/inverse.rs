@@ -104,10 +104,10 @@ pub fn figure21(folder: &Path) -> Result<Group> {
     let (mut off_plane, mut off_guide, mut off_section, mut off_length) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
     for ((found, lengths), net) in outputs.iter().zip(&fine) {
         let grid = found.surface.net().grid();
-        for k in 0..grid.rows() {
+        for (k, length) in lengths.iter().enumerate() {
             let plane = Plane::fitting(grid.row(k));
             off_plane = grid.row(k).iter().map(|&point| plane.height(point).abs()).fold(off_plane, f64::max);
-            off_length = off_length.max((chord(grid.row(k)) - lengths[k]).abs());
+            off_length = off_length.max((chord(grid.row(k)) - length).abs());
         }
         off_guide = off_guide.max(farthest(&grid.column(0), &c_guide(24)));
         off_section = off_section.max(farthest(grid.row(0), &section));
