@@ -2,14 +2,14 @@
  *
  * Generated from the sources of the library: do not edit.
  *
- * Handles. A ShapeOpSolver* or ShapeOpCanal* is a small integer (nonzero, below 2^31), not an address: never dereference it. A null
+ * Handles. A ShapeOpSolver* is a small integer (nonzero, below 2^31), not an address: never dereference it. A null
  * handle, one that was deleted, and one that never was a solver's are recognised and refused. Only the low 32 bits
- * count. What is said of solvers below holds for surfaces (ShapeOpCanal*) too.
+ * count. A ShapeOpCanal* is a handle of a surface, and what is said of solvers here holds for it too.
  *
- * Ownership. Every solver of shapeop_create belongs to the caller, who deletes it with shapeop_delete, and every surface,
- * who deletes it with shapeop_canalDelete. Arrays belong
- * to the caller: the library copies what it reads and keeps no pointer. Texts belong to the library and are never
- * freed; how long they stay valid is said with each function.
+ * Ownership. Every solver of shapeop_create belongs to the caller, who deletes it with shapeop_delete, and every
+ * surface, who deletes it with shapeop_canalDelete. Arrays belong to the caller: the library copies what it reads and
+ * keeps no pointer. Texts belong to the library and are never freed; how long they stay valid is said with each
+ * function.
  *
  * Arrays. Points are double[3 * n]: x y z of point 0, then of point 1, and so on. Lengths of points are counted in
  * points, all others in entries. An array of length 0 may be null. Results are written only if the call succeeds.
