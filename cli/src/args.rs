@@ -1,6 +1,7 @@
 //! What can be asked for: commands, options, and the help that teaches them.
 
 pub mod canal;
+pub mod links;
 
 use std::path::PathBuf;
 

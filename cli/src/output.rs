@@ -20,6 +20,7 @@ pub struct Output {
     /// What was written, by what it is.
     written: Vec<(&'static str, PathBuf)>,
     frames: Vec<PathBuf>,
+    sheets: Vec<PathBuf>,
 }
 
 impl Output {
@@ -33,6 +34,7 @@ impl Output {
             picture,
             written: Vec::new(),
             frames: Vec::new(),
+            sheets: Vec::new(),
         })
     }
 
@@ -50,6 +52,14 @@ impl Output {
     /// Writes a text; `ending` follows the run's name.
     pub fn text(&mut self, what: &'static str, ending: &str, text: &str) -> Result<()> {
         self.write(what, ending, text.as_bytes())
+    }
+
+    /// Writes a drawing of many.
+    pub fn sheet(&mut self, number: usize, svg: &str) -> Result<()> {
+        let path = self.path(&format!(".sheet-{number:03}.svg"));
+        write_whole(&path, svg.as_bytes())?;
+        self.sheets.push(path);
+        Ok(())
     }
 
     /// Where [`Self::mesh`] writes.
@@ -107,11 +117,13 @@ impl Output {
     pub fn in_lines(&self) -> String {
         let line = |what: &str, path: &Path| format!("  {what:<12} {}", path.display());
         let mut lines: Vec<String> = self.written.iter().map(|(what, path)| line(what, path)).collect();
-        if let [first, .., last] = self.frames.as_slice() {
-            let last = last.file_name().unwrap_or_default().to_string_lossy();
-            lines.push(format!("{} … {last}", line("frames", first)));
-        } else if let [only] = self.frames.as_slice() {
-            lines.push(line("frame", only));
+        for (many, one, paths) in [("frames", "frame", &self.frames), ("sheets", "sheet", &self.sheets)] {
+            if let [first, .., last] = paths.as_slice() {
+                let last = last.file_name().unwrap_or_default().to_string_lossy();
+                lines.push(format!("{} … {last}", line(many, first)));
+            } else if let [only] = paths.as_slice() {
+                lines.push(line(one, only));
+            }
         }
         lines.join("\n")
     }

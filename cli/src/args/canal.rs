@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum};
 use glam::DVec3;
 
+use super::links::{ChainArgs, parse_list, parse_vector};
 use super::{MeshFormat, PictureFormat};
 
 #[derive(Debug, Args)]
@@ -33,7 +34,7 @@ pub enum CanalCommand {
     #[command(after_help = "\
 Examples:
   shapeop canal revolution examples/canal/profile.csv --columns 24
-  shapeop canal revolution examples/canal/profile.csv --axis 0,1,0 --angle 180 --refine 2 2
+  shapeop canal revolution examples/canal/profile.csv --axis 1,0,0 --through 0,0,-2 --angle 180
 
 Column 0 is the profile; each row runs along a parallel. The profile must be in a plane through the axis and on one side of it.")]
     Revolution(RevolutionArgs),
@@ -54,7 +55,7 @@ As moulding, for rails in space. Beyond the evolute of the rail quads cross them
     /// An inverted surface of revolution over a planar curve from P1 to P4 and two points P2, P3 on a circle with its ends
     #[command(after_help = "\
 Examples:
-  shapeop canal m-revolution examples/canal/bean.obj --p2 -0.7071067811865475,-0.7071067811865476 --p3 0.5,-0.8660254037844386
+  shapeop canal m-revolution examples/canal/bean.obj --p2 -0.6,-0.8 --p3 0.6,-0.8
 
 A roof whose arches are arcs of circles, each in a plane orthogonal to the curve's. What --omega, --ratio and --center choose is the \
 base, which further transformations start from; the surface itself is always the same.")]
@@ -62,8 +63,8 @@ base, which further transformations start from; the surface itself is always the
     /// An inverted moulding or Monge surface through a planar curve and a rail that leaves its plane
     #[command(after_help = "\
 Examples:
-  shapeop canal m-moulding examples/canal/bean.obj examples/canal/arch.csv --center 0,-4
-  shapeop canal m-moulding examples/canal/bean.obj examples/canal/arch.csv --p3 0.5,-0.8660254037844386
+  shapeop canal m-moulding examples/canal/bean.obj examples/canal/arch.csv --center 0,-3
+  shapeop canal m-moulding examples/canal/bean.obj examples/canal/arch.csv --p3 0.6,-0.8
 
 Rail and curve start in the same point. With --p3, on a circle with the curve's ends and the rail's end, the far corner comes near it.")]
     MMoulding(MMouldingArgs),
@@ -412,89 +413,6 @@ pub struct TransformArgs {
     pub output: CanalOutputArgs,
 }
 
-/// A link as it was asked for.
-#[derive(Clone, Debug)]
-pub enum Link {
-    /// A file of links.
-    Chain(PathBuf),
-    /// Center and ratio.
-    Inversion(DVec3, f64),
-    /// A file of factors.
-    Combescure(PathBuf),
-    Translate(DVec3),
-    Scale(f64),
-    /// Axis and degrees.
-    Rotate(DVec3, f64),
-}
-
-/// Links in the order in which they stand on the command line, which a derived parser would not keep.
-#[derive(Clone, Debug)]
-pub struct ChainArgs {
-    pub links: Vec<Link>,
-}
-
-impl Args for ChainArgs {
-    fn augment_args(command: Command) -> Command {
-        let option = |name: &'static str, value: &'static str, help: &'static str| {
-            clap::Arg::new(name)
-                .long(name)
-                .value_name(value)
-                .action(ArgAction::Append)
-                .allow_hyphen_values(true)
-                .help_heading("Chain")
-                .help(help)
-        };
-        command
-            .arg(
-                option("chain", "FILE", "Links from a file (JSON)")
-                    .value_parser(|text: &str| Ok::<_, String>(Link::Chain(PathBuf::from(text)))),
-            )
-            .arg(
-                option("inversion", "X,Y,Z,K", "Inversion with this center and ratio")
-                    .value_parser(|text: &str| parse_four(text).map(|(center, ratio)| Link::Inversion(center, ratio))),
-            )
-            .arg(
-                option("combescure", "FILE", "Combescure transformation with factors from a file (JSON)")
-                    .value_parser(|text: &str| Ok::<_, String>(Link::Combescure(PathBuf::from(text)))),
-            )
-            .arg(
-                option("translate", "X,Y,Z", "Move by a vector")
-                    .value_parser(|text: &str| parse_vector(text).map(Link::Translate)),
-            )
-            .arg(
-                option("scale", "S", "Scale about the origin")
-                    .value_parser(|text: &str| parse_finite(text).map(Link::Scale)),
-            )
-            .arg(
-                option("rotate", "X,Y,Z,DEGREES", "Turn about an axis through the origin")
-                    .value_parser(|text: &str| parse_four(text).map(|(axis, degrees)| Link::Rotate(axis, degrees))),
-            )
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl FromArgMatches for ChainArgs {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let mut links: Vec<(usize, Link)> = Vec::new();
-        for name in ["chain", "inversion", "combescure", "translate", "scale", "rotate"] {
-            let (Some(places), Some(values)) = (matches.indices_of(name), matches.get_many::<Link>(name)) else {
-                continue;
-            };
-            links.extend(places.zip(values.cloned()));
-        }
-        links.sort_by_key(|(place, _)| *place);
-        Ok(Self { links: links.into_iter().map(|(_, link)| link).collect() })
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
 #[derive(Debug, Args)]
 pub struct RefineArgs {
     /// The surface (.json) or a circular mesh (.obj, .off, .ply)
@@ -546,35 +464,14 @@ pub struct PanelsArgs {
     /// Node axes
     #[arg(long, value_name = "AXES", value_enum, default_value = "normals")]
     pub axes: AxesKind,
+    /// Let axes point to the other side: panels thicken and beams reach away from where they point
+    #[arg(long)]
+    pub flip: bool,
     /// What a model unit is
     #[arg(long, value_name = "UNIT", value_enum, default_value = "m")]
     pub unit: Unit,
     #[command(flatten)]
     pub output: CanalOutputArgs,
-}
-
-fn parse_finite(text: &str) -> Result<f64, String> {
-    let value = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
-    value.ok_or_else(|| format!("expected a finite number, found \"{text}\""))
-}
-
-fn parse_list(text: &str) -> Result<Vec<f64>, String> {
-    text.split(',').map(parse_finite).collect()
-}
-
-fn parse_vector(text: &str) -> Result<DVec3, String> {
-    match parse_list(text)?[..] {
-        [x, y] => Ok(DVec3::new(x, y, 0.0)),
-        [x, y, z] => Ok(DVec3::new(x, y, z)),
-        ref values => Err(format!("expected x,y or x,y,z, found {} numbers", values.len())),
-    }
-}
-
-fn parse_four(text: &str) -> Result<(DVec3, f64), String> {
-    match parse_list(text)?[..] {
-        [x, y, z, w] => Ok((DVec3::new(x, y, z), w)),
-        ref values => Err(format!("expected 4 numbers, found {}", values.len())),
-    }
 }
 
 fn parse_numbers(text: &str) -> Result<Numbers, String> {
@@ -584,26 +481,7 @@ fn parse_numbers(text: &str) -> Result<Numbers, String> {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser;
-
-    use super::super::{Cli, Command};
     use super::*;
-
-    #[test]
-    fn links_keep_their_order() {
-        let line = "shapeop canal transform a.json --scale 2 --inversion -1,0,2,-0.5 --translate 1,2 --scale -3 --chain c.json";
-        let Command::Canal(CanalArgs { command: CanalCommand::Transform(args) }) =
-            Cli::try_parse_from(line.split(' ')).unwrap().command
-        else {
-            panic!("another command");
-        };
-        let names: Vec<String> = args.chain.links.iter().map(|link| format!("{link:?}")).collect();
-        assert_eq!(names[0], "Scale(2.0)");
-        assert!(names[1].starts_with("Inversion(") && names[1].ends_with("-0.5)"));
-        assert_eq!(names[3..], ["Scale(-3.0)", "Chain(\"c.json\")"]);
-        let wrong = line.replace("-1,0,2,-0.5", "1,2,3");
-        assert!(Cli::try_parse_from(wrong.split(' ')).unwrap_err().to_string().contains("expected 4 numbers, found 3"));
-    }
 
     #[test]
     fn numbers_are_a_list_or_a_file() {

@@ -112,7 +112,7 @@ pub struct Measures {
     pub crossed_faces: Vec<usize>,
     pub flipped_faces: Vec<usize>,
     pub shrunk_faces: Vec<usize>,
-    /// Rows that reach at least 80 % of the way to the evolute of the guide; empty where that means nothing.
+    /// Rows of the surface that reach at least 80 % of the way to the evolute of the guide; empty where that means nothing.
     pub rows_near_evolute: Vec<usize>,
 }
 
@@ -195,7 +195,9 @@ pub fn write(command: &str, input: &Path, made: Made, args: &CanalOutputArgs, is
     let net = refined(&made.surface, pieces(args, made.refine)?)?;
     let grid = net.grid();
     let mesh = grid.mesh();
-    let measures = Measures::of(grid, made.has_evolute);
+    let mut measures = Measures::of(grid, false);
+    // The guide as it was given: pieces of its arcs say no more of its curvature.
+    measures.rows_near_evolute = Measures::of(made.surface.net().grid(), made.has_evolute).rows_near_evolute;
     let Made { surface, curves, drawn, found, mut warnings, .. } = made;
     warnings.extend(measures.warnings());
     let mut output = Output::new(&args.out, &without_surface(input), command, args.picture)?;

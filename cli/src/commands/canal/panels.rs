@@ -14,7 +14,7 @@ use shapeop::mesh::measure::{Spread, edge_lengths};
 use shapeop::mesh::{Grid, Mesh};
 
 use super::made::{Measures, in_json, pieces, refined, without_surface};
-use super::sheets::{Sheet, sheet};
+use super::sheets::{Sheet, drawn};
 use super::transform::Components;
 use crate::Ending;
 use crate::args::canal::{AxesKind, PanelsArgs, Unit};
@@ -53,13 +53,14 @@ pub fn run(args: &PanelsArgs, is_quiet: bool) -> Result<Ending> {
 fn component(args: &PanelsArgs, name: &std::path::Path, family: &str, net: &Net, is_quiet: bool) -> Result<Ending> {
     let grid = net.grid();
     let mesh = grid.mesh();
+    // Before the search: a folder that cannot be made should cost nothing.
+    let mut output = Output::new(&args.output.out, &without_surface(name), "panels", args.output.picture)?;
     let axes = axes(args, grid, net.frames(), is_quiet)?;
     let height = match args.beam_height {
         Some(height) => height,
         None => BEAM_HEIGHT * Spread::of(&edge_lengths(&mesh)?).mean,
     };
     let parts = PartsForm::new(grid, &axes, args.thickness, height)?;
-    let mut output = Output::new(&args.output.out, &without_surface(name), "panels", args.output.picture)?;
     output.mesh(&mesh, args.output.format.into())?;
     output.text("parts", ".parts.json", &parts.to_json())?;
     let below = offset(grid, &axes.axes, -height)?.mesh();
@@ -75,7 +76,7 @@ fn component(args: &PanelsArgs, name: &std::path::Path, family: &str, net: &Net,
             Unit::M => 1000.0,
         };
         let sheet = Sheet { name: &file_name(name), row, panels: row_panels, thickness: args.thickness, millimetres };
-        output.text("sheet", &format!(".sheet-{row:03}.svg"), &self::sheet(&sheet)?)?;
+        output.sheet(row, &drawn(&sheet)?)?;
     }
     let gap = axes.largest_gap(height);
     if output.wants_pictures() {
@@ -97,7 +98,7 @@ fn component(args: &PanelsArgs, name: &std::path::Path, family: &str, net: &Net,
         };
         let picture = Picture {
             title,
-            subtitle: format!("sheets in {}, one for each of {rows} rows", "true scale"),
+            subtitle: format!("{rows} sheets in true scale, one for each row"),
             panels: vec![panel],
             scale: None,
             fits_each: false,
@@ -152,8 +153,9 @@ fn component(args: &PanelsArgs, name: &std::path::Path, family: &str, net: &Net,
 }
 
 fn axes(args: &PanelsArgs, grid: &Grid, frames: &[Frame], is_quiet: bool) -> Result<NodeAxes> {
+    let sign = if args.flip { -1.0 } else { 1.0 };
     if args.axes == AxesKind::Normals {
-        let normals: Vec<DVec3> = frames.iter().map(|frame| frame.normal).collect();
+        let normals: Vec<DVec3> = frames.iter().map(|frame| sign * frame.normal).collect();
         return Ok(NodeAxes::of(grid, &normals)?);
     }
     let progress = Progress::new(STEPS, is_quiet);
@@ -162,7 +164,13 @@ fn axes(args: &PanelsArgs, grid: &Grid, frames: &[Frame], is_quiet: bool) -> Res
         if is_interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     progress.finish();
-    Ok(found?)
+    let mut found = found?;
+    // The search knows no sides: to that of the surface's normal.
+    let is_along = found.axes.iter().zip(frames).map(|(axis, frame)| axis.dot(frame.normal)).sum::<f64>() > 0.0;
+    if is_along == args.flip {
+        found.axes.iter_mut().for_each(|axis| *axis = -*axis);
+    }
+    Ok(found)
 }
 
 /// Beams as quads, each with points of its own.

@@ -12,6 +12,7 @@ use super::strips::lengths_of;
 use crate::Ending;
 use crate::args::canal::SectionsArgs;
 use crate::curve_file::Curve;
+use crate::output::Output;
 use crate::progress::{Progress, catch_interrupts, is_interrupted};
 
 /// Steps of the progress bar.
@@ -33,6 +34,7 @@ pub fn run(args: &SectionsArgs, is_quiet: bool) -> Result<Ending> {
         (Some(nearest), _) => Target::Curve(nearest),
         (None, lengths) => Target::Lengths(lengths.as_deref().context("expected --lengths or --curve")?),
     };
+    Output::new(&args.output.out, &args.guide, "sections", args.output.picture)?;
     catch_interrupts();
     let progress = Progress::new(STEPS, is_quiet);
     let found = c_canal(&guide.points, &section.points, target, args.project, &mut |share| {

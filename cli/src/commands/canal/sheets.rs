@@ -29,7 +29,7 @@ pub struct Sheet<'a> {
 }
 
 /// The drawing. Outlines are seen from the side that the axes point to, and their y runs up.
-pub fn sheet(sheet: &Sheet<'_>) -> Result<String> {
+pub fn drawn(sheet: &Sheet<'_>) -> Result<String> {
     let scaled = |outline: [DVec2; 4]| outline.map(|corner| sheet.millimetres * corner);
     let mut laid = Vec::new();
     for panel in sheet.panels {

@@ -22,6 +22,7 @@ use super::made::{Made, named, write};
 use crate::Ending;
 use crate::args::canal::{ArcArgs, CirclesArgs, FacadeArgs, MeasureArgs, Numbers, StripArgs};
 use crate::curve_file::{Curve, read_circles, read_numbers};
+use crate::output::Output;
 use crate::progress::{Progress, catch_interrupts, is_interrupted};
 
 /// How each face of a strip is cut if nothing is asked for: a strip is one quad wide, and its arcs are what is looked for.
@@ -47,6 +48,7 @@ pub fn strip(args: &StripArgs, is_quiet: bool) -> Result<Ending> {
     let mut smoothed = None;
     let mut ending = Ending::Done;
     if args.smooth {
+        Output::new(&args.output.out, &args.guide, "strip", args.output.picture)?;
         catch_interrupts();
         let progress = Progress::new(u32::try_from(args.iterations).unwrap_or(u32::MAX), is_quiet);
         let curve = |parameter: f64| spline.point(parameter);

@@ -17,7 +17,8 @@ use shapeop::mesh::{Grid, Mesh};
 use super::made::{Made, write};
 use super::strips::tangent;
 use crate::Ending;
-use crate::args::canal::{CanalOutputArgs, Link, RefineArgs, TransformArgs};
+use crate::args::canal::{CanalOutputArgs, RefineArgs, TransformArgs};
+use crate::args::links::Link;
 use crate::curve_file::{extension, from_json, text_of};
 
 /// What a file holds: one surface, or the components of a mesh.
