@@ -83,5 +83,9 @@ struct Acceleration;
 struct AddingAConstraint;
 
 #[cfg(doctest)]
+#[doc = include_str!("../docs/canal.md")]
+struct SuperCanalSurfaces;
+
+#[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

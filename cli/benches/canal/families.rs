@@ -7,19 +7,15 @@ use anyhow::Result;
 use glam::DVec3;
 use shapeop::geometry::canal::bases::{Base, moulding, revolution};
 use shapeop::geometry::canal::chain::{Kind, Transform};
-use shapeop::geometry::canal::circles::Section;
 use shapeop::geometry::canal::families::Family;
-use shapeop::geometry::canal::fit::{FitOptions, fit};
 use shapeop::geometry::canal::inversion::Inversion;
 use shapeop::geometry::canal::net::Net;
-use shapeop::geometry::canal::normals::Orientation;
 use shapeop::geometry::canal::properties::Properties;
 use shapeop::geometry::canal::surface::{BaseKind, SuperCanal};
-use shapeop::mesh::curve::Spacing;
 
 use crate::group::Group;
 use crate::scene::{BLUE, ORANGE, Scene, View, WHITE};
-use crate::shapes::{farthest, free_form};
+use crate::shapes::{farthest, shell};
 
 const ROWS: usize = 17;
 const COLUMNS: usize = 13;
@@ -28,21 +24,7 @@ const COLUMNS: usize = 13;
 fn base(kind: BaseKind) -> Result<Net> {
     let net = |base: Base| Net::new(base.grid, base.frame);
     Ok(match kind {
-        BaseKind::Canal | BaseKind::Circular => {
-            let [first, second] = free_form()?;
-            let fitted = fit(
-                &first,
-                &second,
-                &FitOptions {
-                    circle_count: ROWS,
-                    spacing: Spacing::ArcLength,
-                    column_count: COLUMNS,
-                    orientation: Orientation::Angle(-0.8),
-                    section: Section::ToCurve { is_long_way: false },
-                },
-            )?;
-            Net::new(fitted.grid, fitted.frame)?
-        }
+        BaseKind::Canal | BaseKind::Circular => shell(ROWS, COLUMNS)?,
         BaseKind::Revolution => {
             let profile: Vec<DVec3> = (0..ROWS)
                 .map(|k| k as f64 / 16.0)
@@ -52,11 +34,11 @@ fn base(kind: BaseKind) -> Result<Net> {
         }
         BaseKind::Moulding => {
             let rail: Vec<DVec3> =
-                (0..ROWS).map(|k| 4.0 * k as f64 / 16.0).map(|x| DVec3::new(x, 0.5 * (1.4 * x).sin(), 0.0)).collect();
+                (0..ROWS).map(|k| 4.0 * k as f64 / 16.0).map(|x| DVec3::new(x, 0.32 * (1.3 * x).sin(), 0.0)).collect();
             let side = (rail[1] - rail[0]).cross(DVec3::NEG_Z).normalize();
             let profile: Vec<DVec3> = (0..COLUMNS)
                 .map(|k| 0.5 * PI * k as f64 / 12.0)
-                .map(|angle| rail[0] + (1.0 - angle.cos()) * 1.1 * side + 1.5 * angle.sin() * DVec3::Z)
+                .map(|angle| rail[0] + (1.0 - angle.cos()) * 0.9 * side + 1.5 * angle.sin() * DVec3::Z)
                 .collect();
             net(moulding(&rail, &profile)?.base)?
         }
@@ -123,7 +105,8 @@ pub fn groups(folder: &Path) -> Result<Vec<Group>> {
         match report.stress_lines {
             Ok(lines) => {
                 group.plain("membrane under pressure, residual", lines.residuals[0]);
-                if matches!(family, Family::Canal | Family::Revolution) {
+                // An M-revolution surface is a canal surface too.
+                if matches!(family, Family::Canal | Family::Revolution | Family::MRevolution) {
                     group.at_most("twice as fine", lines.residuals[1], (0.6 * lines.residuals[0]).max(1e-6));
                     words.push("stress lines");
                 } else {

@@ -25,7 +25,8 @@ fn lengths(n: usize, height: f64, factor: impl Fn(f64) -> f64) -> Vec<f64> {
 fn attained() -> Result<Group> {
     let mut group = Group::new(
         "C-canal surfaces: lengths that are attainable",
-        "Sections of 11 edges, three heights; lengths constant, or shrinking by a fifth. Largest |L − L'| over the section's chord.",
+        "Sections of 11 edges, three heights; lengths constant, or shrinking by a fifth. Largest |L − L'| over \
+            the section's chord.",
     );
     for n in COUNTS {
         let (mut off, mut exact) = (0.0_f64, 0.0_f64);
@@ -49,7 +50,8 @@ fn attained() -> Result<Group> {
 fn growing() -> Result<Group> {
     let mut group = Group::new(
         "C-canal surfaces: lengths that grow too fast",
-        "The section's chord times 1 + 3 s along the guide: refused with the attainable interval, or replaced by its nearest end.",
+        "The section's chord times 1 + 3 s along the guide: refused with the attainable interval, or replaced \
+            by its nearest end.",
     );
     for n in COUNTS {
         let wanted = lengths(n, 0.7, |s| 1.0 + 3.0 * s);

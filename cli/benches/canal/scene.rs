@@ -1,6 +1,7 @@
 //! Drawings of surfaces with curves, circles and spheres, several views side by side.
 //!
-//! Everything is drawn from the farthest to the nearest part (painter's algorithm); lines lie a little nearer than they are, so
+//! Everything is drawn from the farthest to the nearest part (painter's algorithm); lines lie a little nearer than
+//! they are, so
 //! that those on a surface are seen.
 
 use std::path::Path;
@@ -153,7 +154,7 @@ impl Eye {
         (mean - self.middle).dot(self.toward) / self.radius
     }
 
-    /// From 0.62 to 1: lit from over the left shoulder, and a little from the right.
+    /// From 0.7 to 1: lit from over the left shoulder, and a little from the right.
     fn light(&self, corners: &[DVec3]) -> f64 {
         let normal: DVec3 = (0..corners.len())
             .map(|k| (corners[k] - corners[0]).cross(corners[(k + 1) % corners.len()] - corners[0]))
@@ -161,7 +162,7 @@ impl Eye {
         let Some(normal) = normal.try_normalize() else { return 1.0 };
         let normal = if normal.dot(self.toward) < 0.0 { -normal } else { normal };
         let lamp = (self.toward + 0.9 * self.up - 0.9 * self.right).normalize();
-        (0.62 + 0.40 * normal.dot(lamp).max(0.0) + 0.05 * normal.dot(self.right).max(0.0)).min(1.0)
+        (0.70 + 0.33 * normal.dot(lamp).max(0.0) + 0.06 * normal.dot(self.right).max(0.0)).min(1.0)
     }
 }
 

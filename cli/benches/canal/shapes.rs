@@ -4,11 +4,14 @@ use std::f64::consts::{PI, TAU};
 
 use anyhow::Result;
 use glam::DVec3;
+use shapeop::geometry::canal::circles::Section;
+use shapeop::geometry::canal::fit::{FitOptions, fit};
 use shapeop::geometry::canal::frame::Frame;
 use shapeop::geometry::canal::inversion::Inversion;
 use shapeop::geometry::canal::net::Net;
+use shapeop::geometry::canal::normals::Orientation;
 use shapeop::mesh::Grid;
-use shapeop::mesh::curve::Spline;
+use shapeop::mesh::curve::{Spacing, Spline};
 
 /// Random numbers from a stated seed (SplitMix64).
 pub struct Random(pub u64);
@@ -125,4 +128,26 @@ pub fn planar_curve(count: i32) -> (Vec<DVec3>, DVec3, DVec3) {
         (1.0 + s * (1.0 - s) * (1.5 + 0.8 * (5.0 * s).sin())) * at(200.0 - 220.0 * s)
     });
     (curve.collect(), at(225.0), at(300.0))
+}
+
+/// A canal surface over two curves on the ground.
+pub fn shell(rows: usize, columns: usize) -> Result<Net> {
+    let through = |at: &dyn Fn(f64) -> DVec3| {
+        Spline::through(&(0..16).map(|k| at(f64::from(k) / 15.0)).collect::<Vec<_>>(), false)
+    };
+    let first = through(&|s| DVec3::new(6.0 * s, 0.8 * (4.6 * s).sin(), 0.0))?;
+    let second = through(&|s| DVec3::new(6.2 * s - 0.1, 2.6 + 0.5 * (3.0 * s + 0.4).cos(), 0.0))?;
+    let options = FitOptions {
+        circle_count: rows,
+        spacing: Spacing::ArcLength,
+        column_count: columns,
+        orientation: Orientation::Angle(1.05),
+        section: Section::ToCurve { is_long_way: false },
+    };
+    let mut fitted = fit(&first, &second, &options)?;
+    // The arch that rises.
+    if fitted.grid.at(rows / 2, columns / 2).z < 0.0 {
+        fitted = fit(&first, &second, &FitOptions { orientation: Orientation::Angle(-1.05), ..options })?;
+    }
+    Ok(Net::new(fitted.grid, fitted.frame)?)
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use glam::DVec3;
 use shapeop::geometry::canal::circle_strip::CircleStrip;
 use shapeop::geometry::canal::circles::Section;
@@ -31,25 +31,29 @@ fn options(circles: usize, columns: usize, angle: f64, section: Section) -> FitO
     }
 }
 
-/// Rows from the guide to a little beyond the second curve, wherever it passes.
-fn beyond(guide: &Guide, curve: &NearestOnCurve<'_>, angle: f64) -> Result<Section> {
+/// The surface of which every section goes from the guide a little beyond where the second curve passes it.
+fn fit_beyond(guide: &Guide, curve: &NearestOnCurve<'_>, columns: usize, angle: f64) -> Result<Fit> {
     let strip = CircleStrip::new(guide, Orientation::Angle(angle), curve)?;
-    let (mut last, mut to_rad) = (0.0_f64, 0.0_f64);
-    for ((circle, crossing), &point) in strip.circles.iter().zip(&strip.crossings).zip(guide.points()) {
-        let Some(crossing) = crossing else { continue };
-        let turn = circle.angle_between(point, crossing.point);
-        // Of the two ways round, the one that is nearer to that of the circle before; the short one at first.
-        let turn = if turn - last > PI { turn - TAU } else { turn };
-        last = turn;
-        to_rad = if turn.abs() > to_rad.abs() { turn } else { to_rad };
+    // Around a circle, of the two ways the one nearer to another angle.
+    let turn = |k: usize, to: DVec3, near: f64| {
+        let turn = strip.circles[k].angle_between(guide.points()[k], to);
+        turn + TAU * ((near - turn) / TAU).round()
+    };
+    let mut crossings: Vec<(usize, f64)> = Vec::new();
+    for (k, crossing) in strip.crossings.iter().enumerate() {
+        let last = crossings.last().map_or(0.0, |last| last.1);
+        crossings.extend(crossing.map(|crossing| (k, turn(k, crossing.point, last))));
     }
-    Ok(Section::Angles { from_rad: 0.0, to_rad: 1.03 * to_rad })
-}
-
-fn fit_beyond(first: &Spline, second: &Spline, circles: usize, angle: f64) -> Result<Fit> {
-    let guide = Guide::along(first, circles, Spacing::ArcLength)?;
-    let curve = NearestOnCurve::new(second)?;
-    Ok(fit_guide(&guide, &curve, &options(circles, 17, angle, beyond(&guide, &curve, angle)?))?)
+    let mut to_rad = crossings.first().map_or(1.0, |first| first.1);
+    let mut fitted = None;
+    for _ in 0..4 {
+        let section = Section::Angles { from_rad: 0.0, to_rad };
+        let fit = fit_guide(guide, curve, &options(0, columns, angle, section))?;
+        let short = crossings.iter().map(|&(k, turned)| turned / turn(k, fit.grid.at(k, columns - 1), to_rad));
+        to_rad *= 1.02 * short.fold(0.0, f64::max);
+        fitted = Some(fit);
+    }
+    fitted.context("no fit")
 }
 
 /// How near a fit is to its two curves: points of column 0 off the first, spheres off the second.
@@ -68,8 +72,7 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
     let guide = Guide::along(&first, 41, Spacing::ArcLength)?;
     let normals = rotation_minimising(&guide, Orientation::Angle(ANGLE))?;
     let touching = spheres_at_points(guide.points(), &normals, &curve)?;
-    let section = beyond(&guide, &curve, ANGLE)?;
-    let fit = fit_guide(&guide, &curve, &options(0, 15, ANGLE, section))?;
+    let fit = fit_beyond(&guide, &curve, 15, ANGLE)?;
     let mut group = Group::new(
         "Figs. 8 to 11: a canal surface that fits two curves",
         "41 circles through points of the first curve; spheres touch the second; 15 points to each circle.",
@@ -78,7 +81,7 @@ pub fn figures8_to_11(folder: &Path) -> Result<Group> {
     curves_met(&mut group, &fit, &first, &second)?;
     group.at_most("F of equation 6", fit.strip.spheres.residual, 1e-20);
     group.at_most("mesh off the second curve / diagonal", fit.deviation / fit.grid.diagonal(), 1e-3);
-    let coarse = fit_guide(&Guide::along(&first, 21, Spacing::ArcLength)?, &curve, &options(0, 15, ANGLE, section))?;
+    let coarse = fit_beyond(&Guide::along(&first, 21, Spacing::ArcLength)?, &curve, 15, ANGLE)?;
     group.at_least("that of half as many circles, times as far", coarse.deviation / fit.deviation, 3.0);
 
     let centers: Vec<DVec3> = touching.touching.iter().map(|it| it.sphere.center).collect();
@@ -154,7 +157,8 @@ pub fn figure24(folder: &Path) -> Result<Group> {
         (2, -0.5, "in parallel planes", 200.0),
     ] {
         let [first, second] = planar_pair(kind)?;
-        let fit = fit_beyond(&first, &second, 49, angle)?;
+        let guide = Guide::along(&first, 49, Spacing::ArcLength)?;
+        let fit = fit_beyond(&guide, &NearestOnCurve::new(&second)?, 15, angle)?;
         curves_met(&mut group, &fit, &first, &second)?;
         let view = View::new(title, azimuth, 34.0).grid(&fit.grid, WHITE);
         let caption = format!("mesh off the red curve: {:.1e} of the diagonal", fit.deviation / fit.grid.diagonal());
@@ -186,7 +190,7 @@ pub fn figure25(folder: &Path) -> Result<Group> {
     // A parabola, and a curve that comes near the centre of curvature at its vertex, (0, 0.8).
     let first = through(&|s| DVec3::new(4.0 * s - 2.0, 0.625 * (4.0 * s - 2.0).powi(2), 0.0))?;
     let second = through(&|s| DVec3::new(1.3 * (2.0 * s - 1.0), 0.72 + 2.0 * (2.0 * s - 1.0).powi(2), 0.55))?;
-    let fit = fit_beyond(&first, &second, 61, -0.5)?;
+    let fit = fit_beyond(&Guide::along(&first, 61, Spacing::ArcLength)?, &NearestOnCurve::new(&second)?, 17, -0.5)?;
     let folds = Folds::of(&fit.grid);
     let mut group = Group::new(
         "Fig. 25: lines of curvature concentrate near the evolute of the guide",
@@ -222,7 +226,9 @@ pub fn figure25(folder: &Path) -> Result<Group> {
     let words = format!("{} of {} rows near the evolute", folds.rows_near_evolute.len(), fit.grid.rows());
     let scene = Scene {
         title: "Fig. 25: lines of curvature concentrate near the evolute".to_owned(),
-        subtitle: "Red panels: sections that reach beyond 80 % of the way to the evolute of the guide curve, which is warned of".to_owned(),
+        subtitle: "Red panels: sections that reach beyond 80 % of the way to the evolute of the guide curve, \
+            which is warned of"
+            .to_owned(),
         columns: 2,
         views: vec![view("the surface", 32.0).caption(words), plan],
     };

@@ -75,7 +75,9 @@ pub fn figure20(folder: &Path) -> Result<Group> {
         View::new("its base, a surface of revolution", 12.0, 34.0).grid(base, WHITE).line(&base.column(0), ORANGE, 3.6);
     let scene = Scene {
         title: "Fig. 20: a surface from the inversion of a surface of revolution".to_owned(),
-        subtitle: "Given: the planar curve (orange) and two points (blue) on a circle with its ends; the arches are vertical circles".to_owned(),
+        subtitle: "Given: the planar curve (orange) and two points (blue) on a circle with its ends; the arches \
+            are vertical circles"
+            .to_owned(),
         columns: 2,
         views: vec![start, result],
     };
@@ -102,10 +104,10 @@ pub fn figure21(folder: &Path) -> Result<Group> {
     let (mut off_plane, mut off_guide, mut off_section, mut off_length) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
     for ((found, lengths), net) in outputs.iter().zip(&fine) {
         let grid = found.surface.net().grid();
-        for k in 0..grid.rows() {
+        for (k, length) in lengths.iter().enumerate() {
             let plane = Plane::fitting(grid.row(k));
             off_plane = grid.row(k).iter().map(|&point| plane.height(point).abs()).fold(off_plane, f64::max);
-            off_length = off_length.max((chord(grid.row(k)) - lengths[k]).abs());
+            off_length = off_length.max((chord(grid.row(k)) - length).abs());
         }
         off_guide = off_guide.max(farthest(&grid.column(0), &c_guide(24)));
         off_section = off_section.max(farthest(grid.row(0), &section));
@@ -139,7 +141,7 @@ pub fn figure21(folder: &Path) -> Result<Group> {
 }
 
 pub fn figure22(folder: &Path) -> Result<Group> {
-    let (mut surface, _) = (c_canal_of(&ellipse(6, 0.62), |_| 1.0)?.0.surface, ());
+    let mut surface = c_canal_of(&ellipse(6, 0.62), |_| 1.0)?.0.surface;
     let grid = surface.net().grid();
     let center = grid.at(12, 3) + 2.4 * grid.diagonal() * DVec3::new(-0.3, 0.2, 0.5);
     surface.push(Transform::Inversion(Inversion::new(center, grid.diagonal().powi(2))?))?;
@@ -162,12 +164,14 @@ pub fn figure22(folder: &Path) -> Result<Group> {
     let mut views = Vec::new();
     for (net, title) in nets.iter().zip(["24 × 6", "48 × 12", "96 × 24"]) {
         let grid = net.grid();
-        let view = View::new(title, 40.0, 40.0).grid(grid, WHITE);
+        let view = View::new(title, 215.0, 40.0).grid(grid, WHITE);
         views.push(view.line(&grid.column(0), ORANGE, 3.0).line(grid.row(0), BLUE, 3.0));
     }
     let scene = Scene {
         title: "Fig. 22: remeshing at three densities".to_owned(),
-        subtitle: "An MC-canal surface; all points of the coarse mesh stay where they are; orange: the guide, blue: the section".to_owned(),
+        subtitle: "An MC-canal surface; all points of the coarse mesh stay where they are; orange: the guide, \
+            blue: the section"
+            .to_owned(),
         columns: 3,
         views,
     };

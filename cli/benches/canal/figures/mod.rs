@@ -24,6 +24,7 @@ const MET: f64 = 1e-12;
 type Figure = fn(&Path) -> Result<Group>;
 
 const FIGURES: [(&str, Figure); 13] = [
+    ("3", inverse::figure3),
     ("5", strips::figure5),
     ("7", strips::figure7),
     ("8", fits::figures8_to_11),
@@ -36,7 +37,6 @@ const FIGURES: [(&str, Figure); 13] = [
     ("23", inverse::figure23),
     ("24", fits::figure24),
     ("25", fits::figure25),
-    ("3", inverse::figure3),
 ];
 
 /// Draws all figures, or the one of this name, and prints a line for each.

@@ -5,42 +5,16 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use glam::DVec3;
-use shapeop::geometry::canal::circles::Section;
-use shapeop::geometry::canal::fit::{FitOptions, fit};
-use shapeop::geometry::canal::net::Net;
 use shapeop::geometry::canal::node_axes::NodeAxes;
-use shapeop::geometry::canal::normals::Orientation;
 use shapeop::geometry::canal::panels::{Panel, beams, offset, panels};
 use shapeop::geometry::canal::parallel::check_parallel;
 use shapeop::geometry::canal::quality::largest;
 use shapeop::mesh::Grid;
-use shapeop::mesh::curve::{Spacing, Spline};
 
 use super::exact;
 use crate::group::Group;
 use crate::scene::{INK, Scene, View, WOOD};
-
-/// A canal surface over two curves on the ground.
-fn shell(rows: usize, columns: usize) -> Result<Net> {
-    let through = |at: &dyn Fn(f64) -> DVec3| {
-        Spline::through(&(0..16).map(|k| at(f64::from(k) / 15.0)).collect::<Vec<_>>(), false)
-    };
-    let first = through(&|s| DVec3::new(6.0 * s, 0.8 * (4.6 * s).sin(), 0.0))?;
-    let second = through(&|s| DVec3::new(6.2 * s - 0.1, 2.6 + 0.5 * (3.0 * s + 0.4).cos(), 0.0))?;
-    let options = FitOptions {
-        circle_count: rows,
-        spacing: Spacing::ArcLength,
-        column_count: columns,
-        orientation: Orientation::Angle(1.05),
-        section: Section::ToCurve { is_long_way: false },
-    };
-    let mut fitted = fit(&first, &second, &options)?;
-    // The arch that rises.
-    if fitted.grid.at(rows / 2, columns / 2).z < 0.0 {
-        fitted = fit(&first, &second, &FitOptions { orientation: Orientation::Angle(-1.05), ..options })?;
-    }
-    Ok(Net::new(fitted.grid, fitted.frame)?)
-}
+use crate::shapes::shell;
 
 fn upward(axes: &[DVec3]) -> Vec<DVec3> {
     let is_down = axes.iter().map(|axis| axis.z).sum::<f64>() < 0.0;

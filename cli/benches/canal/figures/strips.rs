@@ -68,9 +68,18 @@ pub fn figure5(folder: &Path) -> Result<Group> {
     let surface = surface.line(&coarse.column(0), ORANGE, 3.0).line(&coarse.column(16), RED, 3.0);
     let scene = Scene {
         title: "Fig. 5: a canal surface from a strip of eight circles".to_owned(),
-        subtitle: "Circles in one plane; their intersections are the strip's points; sections are half circles upright to the plane".to_owned(),
+        subtitle: "Circles in one plane; their intersections are the strip's points; sections are half circles \
+            upright to the plane"
+            .to_owned(),
         columns: 2,
-        views: vec![crossing(view("eight circles and their strip")).dots(&strip.guide, ORANGE, 3.6).dots(&strip.border, RED, 3.6), surface],
+        views: vec![
+            crossing(view("eight circles and their strip")).dots(&strip.guide, ORANGE, 3.6).dots(
+                &strip.border,
+                RED,
+                3.6,
+            ),
+            surface,
+        ],
     };
     group.picture = Some(scene.write(folder, "figure5")?);
     Ok(group)
@@ -109,7 +118,8 @@ pub fn figure7(folder: &Path) -> Result<Group> {
     Ok(group)
 }
 
-/// A strip around a circle whose other border winds on a sphere. One half is scaled so that it ends opposite to its start, where its
+/// A strip around a circle whose other border winds on a sphere. One half is scaled so that it ends opposite to its
+/// start, where its
 /// mirror image goes on; the last quad is left to [`closed_strip`].
 fn ring() -> Result<ClosedStrip> {
     let at = |k: usize| TAU * k as f64 / 48.0;

@@ -51,7 +51,8 @@ fn on_circle(random: &mut Random) -> [DVec3; 4] {
     }
 }
 
-/// How far four points are from an isosceles trapezoid with parallel sides `P1 P2` and `P4 P3`; the ratio of the sides; the height
+/// How far four points are from an isosceles trapezoid with parallel sides `P1 P2` and `P4 P3`; the ratio of the
+/// sides; the height
 /// over the longer of them.
 fn trapezoid([p1, p2, p3, p4]: [DVec3; 4]) -> [f64; 3] {
     let (first, second) = (p2 - p1, p3 - p4);

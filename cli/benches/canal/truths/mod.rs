@@ -16,7 +16,8 @@ pub fn groups() -> Result<Vec<Group>> {
     Ok(vec![transformations::group()?, strips::group()?, inverse::group()?])
 }
 
-/// The largest distance of a quad's fourth corner from the circle through three, over the mean edge; shares no code with
+/// The largest distance of a quad's fourth corner from the circle through three, over the mean edge; shares no code
+/// with
 /// [`Quality`].
 fn off_circle(grid: &Grid) -> f64 {
     let off = |quad: [usize; 4]| {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use glam::DVec3;
 use shapeop::error::Status;
 use shapeop::geometry::canal::chain::Transform;
@@ -180,6 +180,5 @@ fn patches(group: &mut Group) -> Result<()> {
     }
     group.at_most("T-C12 neighbouring patches along their arc: points", points, 1e-12);
     group.at_most("T-C12 their normals", normals, 1e-12);
-    // Used where there is no patch: a face out of range is refused.
-    surface.net().patch(9, 0).err().context("expected a refusal").map(|_| ())
+    Ok(())
 }
