@@ -176,12 +176,11 @@ pub unsafe extern "C" fn shapeop_canalDefaultFitOptions(options: *mut shapeop_ca
 /// # Safety
 /// `options` is null, or its `struct_size` is set and it is readable for so many bytes.
 unsafe fn read_options(options: *const shapeop_canal_fit_options) -> Result<shapeop_canal_fit_options> {
-    // SAFETY: the caller vouches for it; numbers are valid for any bytes.
     if options.is_null() {
-        Ok(default_options())
-    } else {
-        unsafe { structs::read("options", options, default_options()) }
+        return Ok(default_options());
     }
+    // SAFETY: the caller vouches for it; numbers are valid for any bytes.
+    unsafe { structs::read("options", options, default_options()) }
 }
 
 fn section(options: &shapeop_canal_fit_options) -> Result<Section> {
