@@ -1,4 +1,4 @@
-//! From C arrays to what the geometry takes, and back: inputs are checked first, and outputs are written last, all or none.
+//! From C arrays to what the geometry takes, and back: inputs are checked first, outputs are written last, all or none.
 
 use std::ffi::{c_int, c_void};
 use std::ops::ControlFlow;
@@ -311,8 +311,8 @@ impl Outputs {
         unsafe { self.must(name, out, values) }
     }
 
-    /// Values for an output of a stated capacity, in units of `unit` values, and their number for `count`. The values are
-    /// written if they fit; the number always.
+    /// Values for an output of a stated capacity, in units of `unit` values, and their number for `count`. The values
+    /// are written if they fit; the number always.
     ///
     /// # Safety
     /// `out` is null or writable for `unit * capacity` values, `count` for one int.
