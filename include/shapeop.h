@@ -416,7 +416,8 @@ typedef enum shapeop_canal_section {
 } shapeop_canal_section;
 
 /**
- * Which center of inversion an M-revolution surface takes: a point of the circle of centers, see `shapeop_canalCenters`.
+ * Which center of inversion an M-revolution surface takes: a point of the circle of centers, see
+ * `shapeop_canalCenters`.
  */
 typedef enum shapeop_canal_center {
     /**
@@ -424,8 +425,8 @@ typedef enum shapeop_canal_center {
      */
     SO_CANAL_CENTER_MIDDLE = 0,
     /**
-     * The point at the angle `center_value`, in radians, on the circle of centers: 0 is the middle of the inner arc, pi that of the
-     * outer one.
+     * The point at the angle `center_value`, in radians, on the circle of centers: 0 is the middle of the inner arc,
+     * pi that of the outer one.
      */
     SO_CANAL_CENTER_ANGLE = 1,
     /**
@@ -876,7 +877,8 @@ typedef struct shapeop_canal_smooth_options {
      */
     double cone_angle;
     /**
-     * The most that two spacings of points change against each other, 1 (they stay) or more; may be infinite. Default 4.
+     * The most that two spacings of points change against each other, 1 (they stay) or more; may be infinite. Default
+     * 4.
      */
     double spacing_ratio;
     /**
@@ -924,8 +926,8 @@ typedef struct shapeop_canal_progress {
 } shapeop_canal_progress;
 
 /**
- * Called after every iteration, on the thread that made the call. Returns 0 to go on; anything else ends the call, which succeeds
- * with its best so far. It must return: no exception, no `longjmp`.
+ * Called after every iteration, on the thread that made the call. Returns 0 to go on; anything else ends the call,
+ * which succeeds with its best so far. It must return: no exception, no `longjmp`.
  */
 typedef int (*shapeop_canal_progress_callback)(const struct shapeop_canal_progress *progress, void *user);
 
@@ -968,7 +970,8 @@ typedef struct shapeop_canal_fit_options {
      */
     unsigned int struct_size;
     /**
-     * How many circles, one through each of as many points of the first curve; at least 2, 3 on a closed curve. Default 16.
+     * How many circles, one through each of as many points of the first curve; at least 2, 3 on a closed curve.
+     * Default 16.
      */
     int circle_count;
     /**
@@ -976,7 +979,8 @@ typedef struct shapeop_canal_fit_options {
      */
     int column_count;
     /**
-     * A `shapeop_canal_spacing`. Default 0; with `SO_CANAL_SPACING_POINTS` the number of circles is that of the points.
+     * A `shapeop_canal_spacing`. Default 0; with `SO_CANAL_SPACING_POINTS` the number of circles is that of the
+     * points.
      */
     int spacing;
     /**
@@ -988,7 +992,8 @@ typedef struct shapeop_canal_fit_options {
      */
     int is_long_way;
     /**
-     * 1: the first normal is as near as possible to `normal_x`, `normal_y`, `normal_z`; 0, the default: it is at the angle `angle`.
+     * 1: the first normal is as near as possible to `normal_x`, `normal_y`, `normal_z`; 0, the default: it is at the
+     * angle `angle`.
      */
     int has_normal;
     /**
@@ -996,7 +1001,8 @@ typedef struct shapeop_canal_fit_options {
      */
     int reserved;
     /**
-     * The angle, in radians, about the first tangent from the direction of z orthogonal to it (of x where it is along z). Default 0.
+     * The angle, in radians, about the first tangent from the direction of z orthogonal to it (of x where it is along
+     * z). Default 0.
      */
     double angle;
     /**
@@ -1804,9 +1810,9 @@ SHAPEOP_API const char *shapeop_measureName(int index);
 
 /**
  * Creates a surface of a circular net: `rows` times `columns` points, row by row; `wraps` says which directions close.
- * `frame` is that at point (0, 0): the unit tangents `t1`, from row to row, and `t2`, from column to column, orthogonal;
- * the normal is their cross product. `kind` is a `shapeop_canal_kind`. Null if it is refused, as a net is whose quads
- * have no circles. Delete it with `shapeop_canalDelete`.
+ * `frame` is that at point (0, 0): the unit tangents `t1`, from row to row, and `t2`, from column to column,
+ * orthogonal; the normal is their cross product. `kind` is a `shapeop_canal_kind`. Null if it is refused, as a net is
+ * whose quads have no circles. Delete it with `shapeop_canalDelete`.
  *
  * # Safety
  * `points` is null or readable for `3 * rows * columns` doubles, `frame` for 6.
@@ -1839,8 +1845,8 @@ SHAPEOP_API struct ShapeOpCanal *shapeop_canalCopy(struct ShapeOpCanal *surface)
 SHAPEOP_API void shapeop_canalDelete(struct ShapeOpCanal *surface);
 
 /**
- * The JSON form of a surface, its base and its chain of transformations; null if it is refused. The text is the calling
- * thread's own, valid until that thread's next call of a `shapeop_canal...` function that answers with a text.
+ * The JSON form of a surface, its base and its chain of transformations; null if it is refused. The text is the
+ * calling thread's own, valid until that thread's next call of a `shapeop_canal...` function that answers with a text.
  */
 SHAPEOP_API const char *shapeop_canalText(struct ShapeOpCanal *surface);
 
@@ -1861,20 +1867,17 @@ SHAPEOP_API int shapeop_canalKind(struct ShapeOpCanal *surface);
 SHAPEOP_API int shapeop_canalChainCount(struct ShapeOpCanal *surface);
 
 /**
- * Writes the size of a surface's net: `rows`, `columns` and `wraps`, bits as in `shapeop_canalCreate`. Each may be null.
+ * Writes the size of a surface's net: `rows`, `columns` and `wraps`, bits as in `shapeop_canalCreate`. Each may be
+ * null.
  *
  * # Safety
  * Each is null or writable for one int.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_canalSize(struct ShapeOpCanal *surface,
-                                   int *rows,
-                                   int *columns,
-                                   int *wraps);
+SHAPEOP_API enum shapeop_err shapeop_canalSize(struct ShapeOpCanal *surface, int *rows, int *columns, int *wraps);
 
 /**
- * Writes the points of a surface's net, row by row, if there is room for `capacity` points, and their number to `count`.
- * With null and 0 it only tells the number.
+ * Writes the points of a surface's net, row by row, if there is room for `capacity` points, and their number to
+ * `count`. With null and 0 it only tells the number.
  *
  * # Safety
  * `points` is null or writable for `3 * capacity` doubles, `count` for one int.
@@ -1923,16 +1926,13 @@ enum shapeop_err shapeop_canalRestoredPoints(struct ShapeOpCanal *surface,
                                              int *count);
 
 /**
- * Inverts a surface: a point at the vector `q` from `center` goes to `ratio * q / |q|^2`; `ratio` is in squared model units
- * and not 0. The surface becomes M of what it was.
+ * Inverts a surface: a point at the vector `q` from `center` goes to `ratio * q / |q|^2`; `ratio` is in squared model
+ * units and not 0. The surface becomes M of what it was.
  *
  * # Safety
  * `center` is null or readable for 3 doubles.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_canalInvert(struct ShapeOpCanal *surface,
-                                     const double *center,
-                                     double ratio);
+SHAPEOP_API enum shapeop_err shapeop_canalInvert(struct ShapeOpCanal *surface, const double *center, double ratio);
 
 /**
  * Moves a surface by a vector.
@@ -1948,20 +1948,18 @@ SHAPEOP_API enum shapeop_err shapeop_canalTranslate(struct ShapeOpCanal *surface
 SHAPEOP_API enum shapeop_err shapeop_canalScale(struct ShapeOpCanal *surface, double factor);
 
 /**
- * Turns a surface about the axis through the origin along `axis`, of any length but 0, by `angle` radians, right-handed.
+ * Turns a surface about the axis through the origin along `axis`, of any length but 0, by `angle` radians,
+ * right-handed.
  *
  * # Safety
  * `axis` is null or readable for 3 doubles.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_canalRotate(struct ShapeOpCanal *surface,
-                                     const double *axis,
-                                     double angle);
+SHAPEOP_API enum shapeop_err shapeop_canalRotate(struct ShapeOpCanal *surface, const double *axis, double angle);
 
 /**
- * The Combescure transformation of a surface: the parallel net whose edges along column 0 (from row to row) and along row 0
- * are these multiples, none 0, of what they were. One factor for each edge. Lengths of a direction that wraps must close it
- * (`shapeop_canalCloseLengths`).
+ * The Combescure transformation of a surface: the parallel net whose edges along column 0 (from row to row) and along
+ * row 0 are these multiples, none 0, of what they were. One factor for each edge. Lengths of a direction that wraps
+ * must close it (`shapeop_canalCloseLengths`).
  *
  * # Safety
  * Each array is null or readable for its number of doubles.
@@ -1979,17 +1977,14 @@ enum shapeop_err shapeop_canalCombescureFactors(struct ShapeOpCanal *surface,
 SHAPEOP_API int shapeop_canalUndo(struct ShapeOpCanal *surface);
 
 /**
- * Creates the surface that `surface` is when every face is cut into `one` by `two` pieces along lines of curvature, without a
- * chain: the base is refined and transformed, so that old points stay. Null if it is refused.
+ * Creates the surface that `surface` is when every face is cut into `one` by `two` pieces along lines of curvature,
+ * without a chain: the base is refined and transformed, so that old points stay. Null if it is refused.
  */
-SHAPEOP_API
-struct ShapeOpCanal *shapeop_canalRefined(struct ShapeOpCanal *surface,
-                                          int one,
-                                          int two);
+SHAPEOP_API struct ShapeOpCanal *shapeop_canalRefined(struct ShapeOpCanal *surface, int one, int two);
 
 /**
- * As `shapeop_canalRefined`, with every face cut at the given fractions of the arcs of column 0 (`one`) and row 0 (`two`),
- * ascending between 0 and 1; the net itself is cut, not its base.
+ * As `shapeop_canalRefined`, with every face cut at the given fractions of the arcs of column 0 (`one`) and row 0
+ * (`two`), ascending between 0 and 1; the net itself is cut, not its base.
  *
  * # Safety
  * Each array is null or readable for its number of doubles.
@@ -2002,8 +1997,8 @@ struct ShapeOpCanal *shapeop_canalRefinedAt(struct ShapeOpCanal *surface,
                                             int nb_two);
 
 /**
- * Writes the point and the frame (9 doubles; each output may be null) of the patch over face `(i, j)` at the fractions `u` and
- * `v`, 0 to 1, of its arcs from row to row and from column to column.
+ * Writes the point and the frame (9 doubles; each output may be null) of the patch over face `(i, j)` at the fractions
+ * `u` and `v`, 0 to 1, of its arcs from row to row and from column to column.
  *
  * # Safety
  * `point` is null or writable for 3 doubles, `frame` for 9.
@@ -2018,8 +2013,8 @@ enum shapeop_err shapeop_canalEvaluate(struct ShapeOpCanal *surface,
                                        double *frame);
 
 /**
- * Writes how far the frames come back from themselves across the seams of a surface that wraps, as a difference of unit
- * vectors: 0 where the surface is smooth there, or does not wrap.
+ * Writes how far the frames come back from themselves across the seams of a surface that wraps, as a difference of
+ * unit vectors: 0 where the surface is smooth there, or does not wrap.
  *
  * # Safety
  * `gap` is null or writable for one double.
@@ -2027,19 +2022,17 @@ enum shapeop_err shapeop_canalEvaluate(struct ShapeOpCanal *surface,
 SHAPEOP_API enum shapeop_err shapeop_canalClosingGap(struct ShapeOpCanal *surface, double *gap);
 
 /**
- * Writes how near any forces along the lines of curvature come to equilibrium under a pressure along the normals: 0, the lines
- * can be lines of principal stress; 1, no force carries anything.
+ * Writes how near any forces along the lines of curvature come to equilibrium under a pressure along the normals: 0,
+ * the lines can be lines of principal stress; 1, no force carries anything.
  *
  * # Safety
  * `residual` is null or writable for one double.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_canalMembraneResidual(struct ShapeOpCanal *surface,
-                                               double *residual);
+SHAPEOP_API enum shapeop_err shapeop_canalMembraneResidual(struct ShapeOpCanal *surface, double *residual);
 
 /**
- * As `shapeop_canalMembraneResidual`, for given forces per length in both directions, one per face, above 0 for tension under
- * `pressure` along the normal, which is not 0.
+ * As `shapeop_canalMembraneResidual`, for given forces per length in both directions, one per face, above 0 for
+ * tension under `pressure` along the normal, which is not 0.
  *
  * # Safety
  * The forces are null or readable for `nb_faces` doubles, `residual` is null or writable for one.
@@ -2053,13 +2046,14 @@ enum shapeop_err shapeop_canalMembraneResidualOf(struct ShapeOpCanal *surface,
                                                  double *residual);
 
 /**
- * Measures how circular quads are; `quads` has 4 point indices for each. Each output may be null: `planarity` is the distance of
- * a quad's diagonals over its mean edge, `concyclicity` that of a corner from the circle through the other three over its radius,
- * `is_in_order` whether the corners follow each other around it, so that the quad does not cross itself.
+ * Measures how circular quads are; `quads` has 4 point indices for each. Each output may be null: `planarity` is the
+ * distance of a quad's diagonals over its mean edge, `concyclicity` that of a corner from the circle through the other
+ * three over its radius, `is_in_order` whether the corners follow each other around it, so that the quad does not
+ * cross itself.
  *
  * # Safety
- * `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; each output is null or writable for
- * `nb_quads` values.
+ * `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; each output is null or
+ * writable for `nb_quads` values.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalCheckCircular(const double *points,
@@ -2071,12 +2065,12 @@ enum shapeop_err shapeop_canalCheckCircular(const double *points,
                                             int *is_in_order);
 
 /**
- * Compares the edges of two meshes with the same points, pairs of point indices: writes the largest sine of the angle between an
- * edge and its counterpart, and how many point the other way. Each output may be null.
+ * Compares the edges of two meshes with the same points, pairs of point indices: writes the largest sine of the angle
+ * between an edge and its counterpart, and how many point the other way. Each output may be null.
  *
  * # Safety
- * `a` and `b` are null or readable for `3 * nb_points` doubles, `edges` for `2 * nb_edges` ints; each output is null or writable
- * for one value.
+ * `a` and `b` are null or readable for `3 * nb_points` doubles, `edges` for `2 * nb_edges` ints; each output is null
+ * or writable for one value.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalCheckParallel(const double *a,
@@ -2088,11 +2082,13 @@ enum shapeop_err shapeop_canalCheckParallel(const double *a,
                                             int *reversed_count);
 
 /**
- * Writes the lengths of a grid's edges along column 0, from row to row, and along row 0: one fewer than points there, as many
- * where the direction wraps. `rows` times `columns` points, row by row; `wraps`: `SHAPEOP_WRAPS_ROWS`, `SHAPEOP_WRAPS_COLUMNS`.
+ * Writes the lengths of a grid's edges along column 0, from row to row, and along row 0: one fewer than points there,
+ * as many where the direction wraps. `rows` times `columns` points, row by row; `wraps`: `SHAPEOP_WRAPS_ROWS`,
+ * `SHAPEOP_WRAPS_COLUMNS`.
  *
  * # Safety
- * `points` is null or readable for `3 * rows * columns` doubles; `column` and `row` are null or writable for the lengths.
+ * `points` is null or readable for `3 * rows * columns` doubles; `column` and `row` are null or writable for the
+ * lengths.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalGridLengths(const double *points,
@@ -2103,12 +2099,12 @@ enum shapeop_err shapeop_canalGridLengths(const double *points,
                                           double *row);
 
 /**
- * Writes the lengths for `shapeop_canalCombescure` along two polylines that replace column 0 and row 0 and whose edges are
- * parallel to theirs; below 0 where they point the other way. A polyline has one point more than edges.
+ * Writes the lengths for `shapeop_canalCombescure` along two polylines that replace column 0 and row 0 and whose edges
+ * are parallel to theirs; below 0 where they point the other way. A polyline has one point more than edges.
  *
  * # Safety
- * `points` is null or readable for `3 * rows * columns` doubles, each polyline for 3 times its number of points; `column` and
- * `row` are null or writable for one double per edge.
+ * `points` is null or readable for `3 * rows * columns` doubles, each polyline for 3 times its number of points;
+ * `column` and `row` are null or writable for one double per edge.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalPolylineLengths(const double *points,
@@ -2126,8 +2122,8 @@ enum shapeop_err shapeop_canalPolylineLengths(const double *points,
  * Writes the lengths nearest to the given ones, by least squares, with which a grid that wraps closes.
  *
  * # Safety
- * `points` is null or readable for `3 * rows * columns` doubles; `column` and `out_column` are null or readable and writable for
- * `nb_column` doubles, `row` and `out_row` for `nb_row`.
+ * `points` is null or readable for `3 * rows * columns` doubles; `column` and `out_column` are null or readable and
+ * writable for `nb_column` doubles, `row` and `out_row` for `nb_row`.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalCloseLengths(const double *points,
@@ -2142,13 +2138,13 @@ enum shapeop_err shapeop_canalCloseLengths(const double *points,
                                            double *out_row);
 
 /**
- * Writes the grid parallel to a circular one whose edges along column 0 and row 0 have given lengths, in model units, below 0
- * where they point the other way; it is circular again. `origin` is its point (0, 0), that of the grid itself if null;
- * `reversed_count`, which may be null, the number of edges that point the other way.
+ * Writes the grid parallel to a circular one whose edges along column 0 and row 0 have given lengths, in model units,
+ * below 0 where they point the other way; it is circular again. `origin` is its point (0, 0), that of the grid itself
+ * if null; `reversed_count`, which may be null, the number of edges that point the other way.
  *
  * # Safety
- * `points` is null or readable, `out` null or writable, for `3 * rows * columns` doubles; `column` and `row` are null or readable
- * for their numbers of doubles, `origin` for 3; `reversed_count` is null or writable for one int.
+ * `points` is null or readable, `out` null or writable, for `3 * rows * columns` doubles; `column` and `row` are null
+ * or readable for their numbers of doubles, `origin` for 3; `reversed_count` is null or writable for one int.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalCombescure(const double *points,
@@ -2164,13 +2160,13 @@ enum shapeop_err shapeop_canalCombescure(const double *points,
                                          int *reversed_count);
 
 /**
- * Computes an orthonormal basis of the space of all meshes parallel to a mesh of quads, at most 1000 points, each of them in a
- * face: `dimension` vectors, each `x0 y0 z0 x1 ...`. They are written behind each other if `capacity`, counted in vectors,
- * suffices; with null and 0 only the dimension is told.
+ * Computes an orthonormal basis of the space of all meshes parallel to a mesh of quads, at most 1000 points, each of
+ * them in a face: `dimension` vectors, each `x0 y0 z0 x1 ...`. They are written behind each other if `capacity`,
+ * counted in vectors, suffices; with null and 0 only the dimension is told.
  *
  * # Safety
- * `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; `basis` is null or writable for
- * `3 * nb_points * capacity` doubles, `dimension` for one int.
+ * `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; `basis` is null or
+ * writable for `3 * nb_points * capacity` doubles, `dimension` for one int.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalParallelSpace(const double *points,
@@ -2182,8 +2178,9 @@ enum shapeop_err shapeop_canalParallelSpace(const double *points,
                                             int *dimension);
 
 /**
- * Writes, of all meshes parallel to a mesh of quads, the one whose points `handles` are nearest to `targets` by the sum of squares;
- * among equally near ones that nearest to the mesh itself. The mesh is as for `shapeop_canalParallelSpace`.
+ * Writes, of all meshes parallel to a mesh of quads, the one whose points `handles` are nearest to `targets` by the
+ * sum of squares; among equally near ones that nearest to the mesh itself. The mesh is as for
+ * `shapeop_canalParallelSpace`.
  *
  * # Safety
  * `points` is null or readable, `out` null or writable, for `3 * nb_points` doubles; `quads` is null or readable for
@@ -2200,13 +2197,13 @@ enum shapeop_err shapeop_canalNearestParallel(const double *points,
                                               double *out);
 
 /**
- * Sorts a mesh of quads into grids: `grid_count` is the number of its components, and `rows`, `columns` and `wraps` are those of
- * component `component`. Its point (i, j) is point `indices[i * columns + j]` of the mesh; they are written if there is room for
- * `capacity` of them, and `count` is their number. The other outputs may be null.
+ * Sorts a mesh of quads into grids: `grid_count` is the number of its components, and `rows`, `columns` and `wraps`
+ * are those of component `component`. Its point (i, j) is point `indices[i * columns + j]` of the mesh; they are
+ * written if there is room for `capacity` of them, and `count` is their number. The other outputs may be null.
  *
  * # Safety
- * `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; `indices` is null or writable for
- * `capacity` ints, all other outputs for one.
+ * `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; `indices` is null or
+ * writable for `capacity` ints, all other outputs for one.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalGridOfMesh(const double *points,
@@ -2223,21 +2220,17 @@ enum shapeop_err shapeop_canalGridOfMesh(const double *points,
                                          int *count);
 
 /**
- * Writes the frame (9 doubles: the unit vectors `t1`, `t2` and the normal `t1 x t2`) whose normal has the spherical coordinates
- * `theta`, from +z, and `lambda`, from +x about +z, turned about it by `psi`, all in radians.
+ * Writes the frame (9 doubles: the unit vectors `t1`, `t2` and the normal `t1 x t2`) whose normal has the spherical
+ * coordinates `theta`, from +z, and `lambda`, from +x about +z, turned about it by `psi`, all in radians.
  *
  * # Safety
  * `out` is null or writable for 9 doubles.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_canalFrameOfAngles(double lambda,
-                                            double theta,
-                                            double psi,
-                                            double *out);
+SHAPEOP_API enum shapeop_err shapeop_canalFrameOfAngles(double lambda, double theta, double psi, double *out);
 
 /**
- * Writes the frame that has the tangent `tangent`, of any length but 0, in `direction` 1 (from row to row) or 2 (from column to
- * column), and whose normal is as near as possible to `normal`.
+ * Writes the frame that has the tangent `tangent`, of any length but 0, in `direction` 1 (from row to row) or 2 (from
+ * column to column), and whose normal is as near as possible to `normal`.
  *
  * # Safety
  * `tangent` and `normal` are null or readable for 3 doubles; `out` is null or writable for 9.
@@ -2249,8 +2242,8 @@ enum shapeop_err shapeop_canalFrameOfTangent(const double *tangent,
                                              double *out);
 
 /**
- * Writes the frame at the other end of an edge in `direction` 1 or 2: the mirror image in the plane that bisects it, with the
- * tangent of that direction turned round. `frame` has the unit vectors `t1` and `t2`, 6 doubles; `out` has 9.
+ * Writes the frame at the other end of an edge in `direction` 1 or 2: the mirror image in the plane that bisects it,
+ * with the tangent of that direction turned round. `frame` has the unit vectors `t1` and `t2`, 6 doubles; `out` has 9.
  *
  * # Safety
  * `frame` is null or readable for 6 doubles, `edge` for 3; `out` is null or writable for 9.
@@ -2262,8 +2255,8 @@ enum shapeop_err shapeop_canalFrameAcross(const double *frame,
                                           double *out);
 
 /**
- * Writes the frames at all points of a circular grid, 9 doubles each, from that at point (0, 0): `frame`, the unit vectors `t1` and
- * `t2`. `closing_gap`, which may be null, is that of `shapeop_canalClosingGap`.
+ * Writes the frames at all points of a circular grid, 9 doubles each, from that at point (0, 0): `frame`, the unit
+ * vectors `t1` and `t2`. `closing_gap`, which may be null, is that of `shapeop_canalClosingGap`.
  *
  * # Safety
  * `points` is null or readable for `3 * rows * columns` doubles, `frame` for 6; `out` is null or writable for
@@ -2279,12 +2272,14 @@ enum shapeop_err shapeop_canalGridFrames(const double *points,
                                          double *closing_gap);
 
 /**
- * Looks for folds of a grid whose column 0 is the guide. Each output may be null: per row `evolute_ratios`, how far its section
- * reaches towards the evolute of the guide (1: up to it; 0 where the guide is straight) and `is_near_evolute` (from 0.8 on); per
- * face `edge_ratios`, the least ratio of opposite edges, and `face_flags`, bits `SHAPEOP_FACE_...`.
+ * Looks for folds of a grid whose column 0 is the guide. Each output may be null: per row `evolute_ratios`, how far
+ * its section reaches towards the evolute of the guide (1: up to it; 0 where the guide is straight) and
+ * `is_near_evolute` (from 0.8 on); per face `edge_ratios`, the least ratio of opposite edges, and `face_flags`, bits
+ * `SHAPEOP_FACE_...`.
  *
  * # Safety
- * `points` is null or readable for `3 * rows * columns` doubles; each output is null or writable for one value per row or face.
+ * `points` is null or readable for `3 * rows * columns` doubles; each output is null or writable for one value per row
+ * or face.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalFolds(const double *points,
@@ -2324,11 +2319,13 @@ enum shapeop_err shapeop_canalInvertComplex(const double *points,
                                             double *out);
 
 /**
- * Writes the image of a circle: its center, the unit vector along its axis and its radius, 7 doubles, as it is given. A circle
- * through the center of inversion goes to a line: `is_line` then is 1, and `out` a point of it, a unit vector along it, and 0.
+ * Writes the image of a circle: its center, the unit vector along its axis and its radius, 7 doubles, as it is given.
+ * A circle through the center of inversion goes to a line: `is_line` then is 1, and `out` a point of it, a unit vector
+ * along it, and 0.
  *
  * # Safety
- * `circle` is null or readable for 7 doubles, `center` for 3; `out` is null or writable for 7 doubles, `is_line` for one int.
+ * `circle` is null or readable for 7 doubles, `center` for 3; `out` is null or writable for 7 doubles, `is_line` for
+ * one int.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalInvertCircle(const double *circle,
@@ -2338,11 +2335,13 @@ enum shapeop_err shapeop_canalInvertCircle(const double *circle,
                                            int *is_line);
 
 /**
- * Writes the image of a sphere. Either `is_plane` is 0 and `out` has a sphere: its center, three zeros, and its radius. Or, for a
- * sphere through the center of inversion, it is 1 and `out` has a plane: a point, the unit normal, and 0.
+ * Writes the image of a sphere. Either `is_plane` is 0 and `out` has a sphere: its center, three zeros, and its
+ * radius. Or, for a sphere through the center of inversion, it is 1 and `out` has a plane: a point, the unit normal,
+ * and 0.
  *
  * # Safety
- * `sphere_center` and `center` are null or readable for 3 doubles; `out` is null or writable for 7, `is_plane` for one int.
+ * `sphere_center` and `center` are null or readable for 3 doubles; `out` is null or writable for 7, `is_plane` for one
+ * int.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalInvertSphere(const double *sphere_center,
@@ -2356,7 +2355,8 @@ enum shapeop_err shapeop_canalInvertSphere(const double *sphere_center,
  * As `shapeop_canalInvertSphere`, for the plane through a point with a normal of any length but 0.
  *
  * # Safety
- * `point`, `normal` and `center` are null or readable for 3 doubles; `out` is null or writable for 7, `is_plane` for one int.
+ * `point`, `normal` and `center` are null or readable for 3 doubles; `out` is null or writable for 7, `is_plane` for
+ * one int.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalInvertPlane(const double *point,
@@ -2375,21 +2375,22 @@ enum shapeop_err shapeop_canalInvertPlane(const double *point,
 SHAPEOP_API enum shapeop_err shapeop_canalDefaultSmoothOptions(struct shapeop_canal_smooth_options *options);
 
 /**
- * Smooths a strip with a frame at its first point (`frame`: the unit tangents `t1`, near the guide's, and `t2`): lowers the sum of
- * the squared curvatures of the arcs over all edges by moving the guide's points along their curve, the cubic spline through
- * them, and by changing lengths and frame. The guide's ends and the direction of the first crossing edge stay.
+ * Smooths a strip with a frame at its first point (`frame`: the unit tangents `t1`, near the guide's, and `t2`):
+ * lowers the sum of the squared curvatures of the arcs over all edges by moving the guide's points along their curve,
+ * the cubic spline through them, and by changing lengths and frame. The guide's ends and the direction of the first
+ * crossing edge stay.
  *
- * `options` is null for the defaults. `progress` may be null. Outputs: the guide and the border, `nb_points` points each, where each
- * guide point is on the curve (`parameters`, in lengths of chords along the given points) and the frame, 9 doubles; the last two may
- * be null. `report` is null, or its `struct_size` is set. Of `history`, the functional at the start and after every iteration, as
- * many entries are written as there are if there is room for `capacity`; `count` is their number. All three are null, 0 and
- * null to leave it out.
+ * `options` is null for the defaults. `progress` may be null. Outputs: the guide and the border, `nb_points` points
+ * each, where each guide point is on the curve (`parameters`, in lengths of chords along the given points) and the
+ * frame, 9 doubles; the last two may be null. `report` is null, or its `struct_size` is set. Of `history`, the
+ * functional at the start and after every iteration, as many entries are written as there are if there is room for
+ * `capacity`; `count` is their number. All three are null, 0 and null to leave it out.
  *
  * # Safety
- * `guide` and `border` are null or readable, `out_guide` and `out_border` null or writable, for `3 * nb_points` doubles; `frame` is
- * readable for 6. `parameters` is null or writable for `nb_points` doubles, `out_frame` for 9, `history` for `capacity`, `count`
- * for one int. `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many
- * bytes. `progress` is null or a function of that signature.
+ * `guide` and `border` are null or readable, `out_guide` and `out_border` null or writable, for `3 * nb_points`
+ * doubles; `frame` is readable for 6. `parameters` is null or writable for `nb_points` doubles, `out_frame` for 9,
+ * `history` for `capacity`, `count` for one int. `options` and `report` are null, or their `struct_size` is set and
+ * they are readable or writable for so many bytes. `progress` is null or a function of that signature.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalSmooth(const double *guide,
@@ -2412,7 +2413,8 @@ enum shapeop_err shapeop_canalSmooth(const double *guide,
  * Writes what `shapeop_canalSmooth` minimises, for a strip with a frame at its first point.
  *
  * # Safety
- * `guide` and `border` are null or readable for `3 * nb_points` doubles, `frame` for 6; `out` is null or writable for one.
+ * `guide` and `border` are null or readable for `3 * nb_points` doubles, `frame` for 6; `out` is null or writable for
+ * one.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalStripEnergy(const double *guide,
@@ -2422,16 +2424,18 @@ enum shapeop_err shapeop_canalStripEnergy(const double *guide,
                                           double *out);
 
 /**
- * Writes the border of the strip of circular quads along `points` that begins at `start` and whose crossing edges have the given
- * lengths, in model units, one for each point. Not every sequence of lengths is attainable: `flags` has bits
+ * Writes the border of the strip of circular quads along `points` that begins at `start` and whose crossing edges have
+ * the given lengths, in model units, one for each point. Not every sequence of lengths is attainable: `flags` has bits
  * `SHAPEOP_STRIP_...`; without them a refusal says what is attainable, and the message has the quad.
  *
- * All outputs but `border` may be null: the lengths that were made, the largest attainable length at the end of each quad,
- * whether each quad crosses itself, whether each length was replaced, and the largest difference of a length from that asked for.
+ * All outputs but `border` may be null: the lengths that were made, the largest attainable length at the end of each
+ * quad, whether each quad crosses itself, whether each length was replaced, and the largest difference of a length
+ * from that asked for.
  *
  * # Safety
- * `points` is null or readable, `border` null or writable, for `3 * nb_points` doubles; `start` is readable for 3. `lengths`,
- * `out_lengths` and `is_projected` have `nb_points` values, `attainable` and `is_flipped` one fewer, `deviation` one.
+ * `points` is null or readable, `border` null or writable, for `3 * nb_points` doubles; `start` is readable for 3.
+ * `lengths`, `out_lengths` and `is_projected` have `nb_points` values, `attainable` and `is_flipped` one fewer,
+ * `deviation` one.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalStrip(const double *points,
@@ -2447,8 +2451,8 @@ enum shapeop_err shapeop_canalStrip(const double *points,
                                     double *deviation);
 
 /**
- * As `shapeop_canalStrip`, from the radius of each quad's circle, one fewer than points. `start` says in which direction the first
- * crossing edge goes. With `flags` `SHAPEOP_STRIP_STRICT` quads that cross themselves are refused.
+ * As `shapeop_canalStrip`, from the radius of each quad's circle, one fewer than points. `start` says in which
+ * direction the first crossing edge goes. With `flags` `SHAPEOP_STRIP_STRICT` quads that cross themselves are refused.
  *
  * # Safety
  * As `shapeop_canalStrip`; `radii` is null or readable for `nb_points - 1` doubles.
@@ -2464,7 +2468,8 @@ enum shapeop_err shapeop_canalStripOfRadii(const double *points,
                                            int *is_flipped);
 
 /**
- * As `shapeop_canalStrip`, from the lengths of the border's edges, one fewer than points. They are attainable from any angle.
+ * As `shapeop_canalStrip`, from the lengths of the border's edges, one fewer than points. They are attainable from any
+ * angle.
  *
  * # Safety
  * As `shapeop_canalStrip`; `edges` is null or readable for `nb_points - 1` doubles.
@@ -2492,8 +2497,8 @@ enum shapeop_err shapeop_canalLengthsBetween(const double *points,
                                              double *out);
 
 /**
- * Writes the lengths of the edges of a border that is `length` long in all, one fewer than points, each in the proportion of the
- * guide's edge.
+ * Writes the lengths of the edges of a border that is `length` long in all, one fewer than points, each in the
+ * proportion of the guide's edge.
  *
  * # Safety
  * `points` is null or readable for `3 * nb_points` doubles, `out` is null or writable for `nb_points - 1`.
@@ -2505,11 +2510,12 @@ enum shapeop_err shapeop_canalEdgesOfBorder(const double *points,
                                             double *out);
 
 /**
- * Writes the circle of each quad of a strip: its center, the unit vector along its axis and its radius, 7 doubles; one fewer than
- * points on either side.
+ * Writes the circle of each quad of a strip: its center, the unit vector along its axis and its radius, 7 doubles; one
+ * fewer than points on either side.
  *
  * # Safety
- * `guide` and `border` are null or readable for `3 * nb_points` doubles, `out` is null or writable for `7 * (nb_points - 1)`.
+ * `guide` and `border` are null or readable for `3 * nb_points` doubles, `out` is null or writable for `7 * (nb_points
+ * - 1)`.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalStripCircles(const double *guide,
@@ -2518,14 +2524,14 @@ enum shapeop_err shapeop_canalStripCircles(const double *guide,
                                            double *out);
 
 /**
- * Writes the strip whose quads have the given circles, two or more, of which consecutive ones meet in two points: `nb_circles + 1`
- * points on either side. The first crossing edge goes through the point of the first circle nearest to `start`, the last one
- * through that of the last circle nearest to `end`; either may be null. `distance`, which may be null, is the largest
- * distance of a point from a circle that it should be on.
+ * Writes the strip whose quads have the given circles, two or more, of which consecutive ones meet in two points:
+ * `nb_circles + 1` points on either side. The first crossing edge goes through the point of the first circle nearest
+ * to `start`, the last one through that of the last circle nearest to `end`; either may be null. `distance`, which may
+ * be null, is the largest distance of a point from a circle that it should be on.
  *
  * # Safety
- * `circles` is null or readable for `7 * nb_circles` doubles, `start` and `end` are null or readable for 3; `guide` and `border` are
- * null or writable for `3 * (nb_circles + 1)`, `distance` for one.
+ * `circles` is null or readable for `7 * nb_circles` doubles, `start` and `end` are null or readable for 3; `guide`
+ * and `border` are null or writable for `3 * (nb_circles + 1)`, `distance` for one.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalStripOfCircles(const double *circles,
@@ -2537,13 +2543,14 @@ enum shapeop_err shapeop_canalStripOfCircles(const double *circles,
                                              double *distance);
 
 /**
- * Tells how a frame comes back around a closed polygon, whose last point may repeat the first. Each output may be null: the
- * product of the reflections, 9 doubles column by column; how far it is from what a smooth surface needs; whether that is round-off;
- * for an odd number of edges the first tangent that the frame must have (zero for an even number, where it is free).
+ * Tells how a frame comes back around a closed polygon, whose last point may repeat the first. Each output may be
+ * null: the product of the reflections, 9 doubles column by column; how far it is from what a smooth surface needs;
+ * whether that is round-off; for an odd number of edges the first tangent that the frame must have (zero for an even
+ * number, where it is free).
  *
  * # Safety
- * `points` is null or readable for `3 * nb_points` doubles; `matrix` is null or writable for 9 doubles, `tangent` for 3, `residual`
- * and `closes` for one value.
+ * `points` is null or readable for `3 * nb_points` doubles; `matrix` is null or writable for 9 doubles, `tangent` for
+ * 3, `residual` and `closes` for one value.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalHolonomy(const double *points,
@@ -2554,8 +2561,8 @@ enum shapeop_err shapeop_canalHolonomy(const double *points,
                                        double *tangent);
 
 /**
- * Writes the frame at the first point of a closed polygon with which the surface is smooth across the seam and that is nearest to
- * `wish`, the unit tangents `t1` and `t2`; 9 doubles. Refused with `SO_NOT_CLOSED` where there is none.
+ * Writes the frame at the first point of a closed polygon with which the surface is smooth across the seam and that is
+ * nearest to `wish`, the unit tangents `t1` and `t2`; 9 doubles. Refused with `SO_NOT_CLOSED` where there is none.
  *
  * # Safety
  * `points` is null or readable for `3 * nb_points` doubles, `wish` for 6; `out` is null or writable for 9.
@@ -2567,13 +2574,14 @@ enum shapeop_err shapeop_canalClosedFrame(const double *points,
                                           double *out);
 
 /**
- * Writes the closed polygon inscribed in a sphere about the origin whose edges are parallel to those of a closed polygon and nearest
- * to them in length, if there is room for `capacity` points, and their number to `count`: 0 if there is none, as the polygon is not
- * pseudo-spherical. `reversed_count`, which may be null, is the number of its edges that point the other way.
+ * Writes the closed polygon inscribed in a sphere about the origin whose edges are parallel to those of a closed
+ * polygon and nearest to them in length, if there is room for `capacity` points, and their number to `count`: 0 if
+ * there is none, as the polygon is not pseudo-spherical. `reversed_count`, which may be null, is the number of its
+ * edges that point the other way.
  *
  * # Safety
- * `points` is null or readable for `3 * nb_points` doubles; `out` is null or writable for `3 * capacity` doubles, `count` and
- * `reversed_count` for one int.
+ * `points` is null or readable for `3 * nb_points` doubles; `out` is null or writable for `3 * capacity` doubles,
+ * `count` and `reversed_count` for one int.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalParallelOnSphere(const double *points,
@@ -2584,14 +2592,14 @@ enum shapeop_err shapeop_canalParallelOnSphere(const double *points,
                                                int *reversed_count);
 
 /**
- * Writes the circle that closes a strip: `first_circle` goes through `start` and the guide's first point `guide_first`,
- * `last_circle` through the guide's last point `guide_last`. `first` is where `start` must be, `last` the point opposite to
- * `guide_last`. Other outputs may be null: `which_case` is 1 if both circles are on one sphere, so that `start` stays, or 2;
- * `is_crossed` whether the closing quad crosses itself.
+ * Writes the circle that closes a strip: `first_circle` goes through `start` and the guide's first point
+ * `guide_first`, `last_circle` through the guide's last point `guide_last`. `first` is where `start` must be, `last`
+ * the point opposite to `guide_last`. Other outputs may be null: `which_case` is 1 if both circles are on one sphere,
+ * so that `start` stays, or 2; `is_crossed` whether the closing quad crosses itself.
  *
  * # Safety
- * Circles are null or readable for 7 doubles, points for 3; `circle` is null or writable for 7, `first` and `last` for 3, the others
- * for one int.
+ * Circles are null or readable for 7 doubles, points for 3; `circle` is null or writable for 7, `first` and `last` for
+ * 3, the others for one int.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalCloseCircles(const double *first_circle,
@@ -2606,13 +2614,14 @@ enum shapeop_err shapeop_canalCloseCircles(const double *first_circle,
                                            int *is_crossed);
 
 /**
- * Closes a strip of `nb_points` points on either side with the guide's last point `last`: writes the border of `nb_points + 1` points,
- * of which the first moves where it must. `circle` (of the closing quad), `which_case` and `is_flipped` (one for each quad, the
- * closing one last) may be null.
+ * Closes a strip of `nb_points` points on either side with the guide's last point `last`: writes the border of
+ * `nb_points + 1` points, of which the first moves where it must. `circle` (of the closing quad), `which_case` and
+ * `is_flipped` (one for each quad, the closing one last) may be null.
  *
  * # Safety
- * `guide` and `border` are null or readable for `3 * nb_points` doubles, `last` for 3; `out_border` is null or writable for
- * `3 * (nb_points + 1)` doubles, `circle` for 7, `is_flipped` for `nb_points + 1` ints, `which_case` for one.
+ * `guide` and `border` are null or readable for `3 * nb_points` doubles, `last` for 3; `out_border` is null or
+ * writable for `3 * (nb_points + 1)` doubles, `circle` for 7, `is_flipped` for `nb_points + 1` ints, `which_case` for
+ * one.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalCloseStrip(const double *guide,
@@ -2633,9 +2642,9 @@ enum shapeop_err shapeop_canalCloseStrip(const double *guide,
 SHAPEOP_API enum shapeop_err shapeop_canalDefaultFitOptions(struct shapeop_canal_fit_options *options);
 
 /**
- * Writes points spread over the cubic spline through given ones, and its unit tangents there, which may be null. `spacing` is a
- * `shapeop_canal_spacing`; for `SO_CANAL_SPACING_POINTS` `nb` is that of the points themselves (without a last one that
- * repeats the first of a closed curve). A closed curve's first point is not repeated.
+ * Writes points spread over the cubic spline through given ones, and its unit tangents there, which may be null.
+ * `spacing` is a `shapeop_canal_spacing`; for `SO_CANAL_SPACING_POINTS` `nb` is that of the points themselves (without
+ * a last one that repeats the first of a closed curve). A closed curve's first point is not repeated.
  *
  * # Safety
  * `points` is null or readable for `3 * nb_points` doubles; `out` and `tangents` are null or writable for `3 * nb`.
@@ -2650,14 +2659,15 @@ enum shapeop_err shapeop_canalCurvePoints(const double *points,
                                           int nb);
 
 /**
- * Writes normals along a curve through given points, the first one at an angle (see `shapeop_canal_fit_options.angle`), or as near as
- * possible to `first` if that is not null. `tangents`, of any length, are those of the curve; null: of the spline through the
- * points. `normals` turn as little as the curve allows; `frames` (9 doubles each) are mirrored from point to point, as those of
- * a cyclidic net along its guide. Each of the two may be null. The last point of a closed curve must not repeat the first.
+ * Writes normals along a curve through given points, the first one at an angle (see
+ * `shapeop_canal_fit_options.angle`), or as near as possible to `first` if that is not null. `tangents`, of any
+ * length, are those of the curve; null: of the spline through the points. `normals` turn as little as the curve
+ * allows; `frames` (9 doubles each) are mirrored from point to point, as those of a cyclidic net along its guide. Each
+ * of the two may be null. The last point of a closed curve must not repeat the first.
  *
  * # Safety
- * `points` and `tangents` are null or readable, `normals` is null or writable, for `3 * nb_points` doubles; `first` is null or readable
- * for 3; `frames` is null or writable for `9 * nb_points`.
+ * `points` and `tangents` are null or readable, `normals` is null or writable, for `3 * nb_points` doubles; `first` is
+ * null or readable for 3; `frames` is null or writable for `9 * nb_points`.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalNormals(const double *points,
@@ -2670,14 +2680,15 @@ enum shapeop_err shapeop_canalNormals(const double *points,
                                       double *frames);
 
 /**
- * Writes the spheres that touch a curve in given points, with their centers along `normals` (of any length), and a second curve, the
- * spline through `curve`: the center and the radius, 4 doubles each. Each other output may be null: how far each center is along its
- * normal, where each sphere touches the second curve, bits `SHAPEOP_SPHERE_...` for each, and the sum of the squared differences of
- * radius and distance.
+ * Writes the spheres that touch a curve in given points, with their centers along `normals` (of any length), and a
+ * second curve, the spline through `curve`: the center and the radius, 4 doubles each. Each other output may be null:
+ * how far each center is along its normal, where each sphere touches the second curve, bits `SHAPEOP_SPHERE_...` for
+ * each, and the sum of the squared differences of radius and distance.
  *
  * # Safety
- * `points` and `normals` are null or readable for `3 * nb_points` doubles, `curve` for `3 * nb_curve`; for each point `spheres` is null
- * or writable for 4 doubles, `offsets` for one, `feet` for 3, `flags` for one int; `residual` for one double.
+ * `points` and `normals` are null or readable for `3 * nb_points` doubles, `curve` for `3 * nb_curve`; for each point
+ * `spheres` is null or writable for 4 doubles, `offsets` for one, `feet` for 3, `flags` for one int; `residual` for
+ * one double.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalTouchingSpheres(const double *points,
@@ -2693,28 +2704,28 @@ enum shapeop_err shapeop_canalTouchingSpheres(const double *points,
                                               double *residual);
 
 /**
- * Writes the circles in which each sphere (its center and its radius, 4 doubles) meets the next: one fewer than spheres.
+ * Writes the circles in which each sphere (its center and its radius, 4 doubles) meets the next: one fewer than
+ * spheres.
  *
  * # Safety
  * `spheres` is null or readable for `4 * nb_spheres` doubles, `out` is null or writable for `7 * (nb_spheres - 1)`.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_canalCharacteristicCircles(const double *spheres,
-                                                    int nb_spheres,
-                                                    double *out);
+SHAPEOP_API enum shapeop_err shapeop_canalCharacteristicCircles(const double *spheres, int nb_spheres, double *out);
 
 /**
- * Creates the canal surface through the points of a first curve that touches a second one: the splines through `guide` and `curve`. Row
- * `i` is on circle `i`, from its point of the first curve on unless the section starts elsewhere. Rows do not wrap; columns do around
- * whole circles. `options` is null for the defaults. Null if it is refused.
+ * Creates the canal surface through the points of a first curve that touches a second one: the splines through `guide`
+ * and `curve`. Row `i` is on circle `i`, from its point of the first curve on unless the section starts elsewhere.
+ * Rows do not wrap; columns do around whole circles. `options` is null for the defaults. Null if it is refused.
  *
- * The outputs may be null (a count with them): the circles, 7 doubles each, and the spheres between them, 4 doubles each, with bits
- * `SHAPEOP_SPHERE_...`, are written if there is room for so many. `report` is null, or its `struct_size` is set.
+ * The outputs may be null (a count with them): the circles, 7 doubles each, and the spheres between them, 4 doubles
+ * each, with bits `SHAPEOP_SPHERE_...`, are written if there is room for so many. `report` is null, or its
+ * `struct_size` is set.
  *
  * # Safety
- * `guide` and `curve` are null or readable for 3 times their number of points; `circles` is null or writable for
- * `7 * circle_capacity` doubles, `spheres` for `4 * sphere_capacity`, `sphere_flags` for `sphere_capacity` ints, the counts for one.
- * `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many bytes.
+ * `guide` and `curve` are null or readable for 3 times their number of points; `circles` is null or writable for `7 *
+ * circle_capacity` doubles, `spheres` for `4 * sphere_capacity`, `sphere_flags` for `sphere_capacity` ints, the counts
+ * for one. `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so
+ * many bytes.
  */
 SHAPEOP_API
 struct ShapeOpCanal *shapeop_canalFit(const double *guide,
@@ -2734,12 +2745,13 @@ struct ShapeOpCanal *shapeop_canalFit(const double *guide,
                                       struct shapeop_canal_fit_report *report);
 
 /**
- * Writes points of a section of a circle at equal angles, from its point `start` on: as many as `options->column_count` says. `target` is
- * where the second curve passes, for `SO_CANAL_SECTION_TO_CURVE`; else null. Of `options` those on the section count.
+ * Writes points of a section of a circle at equal angles, from its point `start` on: as many as
+ * `options->column_count` says. `target` is where the second curve passes, for `SO_CANAL_SECTION_TO_CURVE`; else null.
+ * Of `options` those on the section count.
  *
  * # Safety
- * `circle` is null or readable for 7 doubles, `start` and `target` for 3; `options` is null, or its `struct_size` is set and it is
- * readable for so many bytes; `out` is null or writable for 3 times the number of points.
+ * `circle` is null or readable for 7 doubles, `start` and `target` for 3; `options` is null, or its `struct_size` is
+ * set and it is readable for so many bytes; `out` is null or writable for 3 times the number of points.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalSectionPoints(const double *circle,
@@ -2749,12 +2761,13 @@ enum shapeop_err shapeop_canalSectionPoints(const double *circle,
                                             double *out);
 
 /**
- * Writes the grid of which row `i` is on circle `i` and row 0 is given; `guide` has a point of each circle, along which the rows lead
- * from circle to circle. Consecutive circles are on one sphere. If `wraps` is 1 the rows close around the circles.
+ * Writes the grid of which row `i` is on circle `i` and row 0 is given; `guide` has a point of each circle, along
+ * which the rows lead from circle to circle. Consecutive circles are on one sphere. If `wraps` is 1 the rows close
+ * around the circles.
  *
  * # Safety
- * `circles` is null or readable for `7 * nb_circles` doubles, `guide` for `3 * nb_circles`, `row` for `3 * nb_row`; `out` is null or
- * writable for `3 * nb_circles * nb_row`.
+ * `circles` is null or readable for `7 * nb_circles` doubles, `guide` for `3 * nb_circles`, `row` for `3 * nb_row`;
+ * `out` is null or writable for `3 * nb_circles * nb_row`.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalMeshCircles(const double *circles,
@@ -2766,13 +2779,13 @@ enum shapeop_err shapeop_canalMeshCircles(const double *circles,
                                           double *out);
 
 /**
- * Writes a point of each circle from `start`, a point of the first, on. With `guide`, a point of each circle, they make circular quads
- * with it; with null they are a column along which a mesh closes around whole circles: the circles' tangents there are mirror
- * images of each other.
+ * Writes a point of each circle from `start`, a point of the first, on. With `guide`, a point of each circle, they
+ * make circular quads with it; with null they are a column along which a mesh closes around whole circles: the
+ * circles' tangents there are mirror images of each other.
  *
  * # Safety
- * `circles` is null or readable for `7 * nb_circles` doubles, `start` for 3; `guide` is null or readable, `out` null or writable,
- * for `3 * nb_circles`.
+ * `circles` is null or readable for `7 * nb_circles` doubles, `start` for 3; `guide` is null or readable, `out` null
+ * or writable, for `3 * nb_circles`.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalColumn(const double *circles,
@@ -2782,9 +2795,9 @@ enum shapeop_err shapeop_canalColumn(const double *circles,
                                      double *out);
 
 /**
- * Creates the surface of revolution of a profile about the axis through `axis_point` along `axis_direction`. Column 0 is the profile,
- * row `i` runs along the circle of its point `i`, `columns` points from 0 to `angle` (0 to 2 pi, right-handed); a full turn wraps.
- * Null if it is refused, as a profile is that is not in a plane through the axis.
+ * Creates the surface of revolution of a profile about the axis through `axis_point` along `axis_direction`. Column 0
+ * is the profile, row `i` runs along the circle of its point `i`, `columns` points from 0 to `angle` (0 to 2 pi,
+ * right-handed); a full turn wraps. Null if it is refused, as a profile is that is not in a plane through the axis.
  *
  * # Safety
  * `profile` is null or readable for `3 * nb_profile` doubles, the axis for 3 each.
@@ -2798,13 +2811,14 @@ struct ShapeOpCanal *shapeop_canalRevolution(const double *profile,
                                              int columns);
 
 /**
- * Creates the moulding surface of a planar rail and a profile in an orthogonal plane that starts on it. Column 0 is the rail, row 0
- * the profile. Each output may be null: the angle, in radians, between the normal of the profile's plane and the rail's start;
- * how many edges point the other way than the rail's, where the profile reaches beyond the rail's evolute; for a closed rail, how
- * far the profile is from itself after one turn. Null if it is refused.
+ * Creates the moulding surface of a planar rail and a profile in an orthogonal plane that starts on it. Column 0 is
+ * the rail, row 0 the profile. Each output may be null: the angle, in radians, between the normal of the profile's
+ * plane and the rail's start; how many edges point the other way than the rail's, where the profile reaches beyond the
+ * rail's evolute; for a closed rail, how far the profile is from itself after one turn. Null if it is refused.
  *
  * # Safety
- * `rail` and `profile` are null or readable for 3 times their number of points; each output is null or writable for one value.
+ * `rail` and `profile` are null or readable for 3 times their number of points; each output is null or writable for
+ * one value.
  */
 SHAPEOP_API
 struct ShapeOpCanal *shapeop_canalMoulding(const double *rail,
@@ -2816,8 +2830,8 @@ struct ShapeOpCanal *shapeop_canalMoulding(const double *rail,
                                            double *closing_gap);
 
 /**
- * As `shapeop_canalMoulding`, for a rail in space and a planar profile that starts on it: the Monge surface, on which the profile
- * moves without twist.
+ * As `shapeop_canalMoulding`, for a rail in space and a planar profile that starts on it: the Monge surface, on which
+ * the profile moves without twist.
  *
  * # Safety
  * As `shapeop_canalMoulding`.
@@ -2832,14 +2846,15 @@ struct ShapeOpCanal *shapeop_canalMonge(const double *rail,
                                         double *closing_gap);
 
 /**
- * Writes the surface of translation, `rail[i] + profile[j] - profile[0]`, if there is room for `capacity` points, and their number to
- * `count`. Its quads are planar but not circular, so it is no surface with a handle. With `factors`, one above 0 for each rail
- * point, it is the surface of scale-translation, `rail[i] + factors[i] (profile[j] - profile[0])`; null for none. A rail or a
- * profile whose last point repeats the first closes the grid. `rows`, `columns` and `wraps` may be null.
+ * Writes the surface of translation, `rail[i] + profile[j] - profile[0]`, if there is room for `capacity` points, and
+ * their number to `count`. Its quads are planar but not circular, so it is no surface with a handle. With `factors`,
+ * one above 0 for each rail point, it is the surface of scale-translation, `rail[i] + factors[i] (profile[j] -
+ * profile[0])`; null for none. A rail or a profile whose last point repeats the first closes the grid. `rows`,
+ * `columns` and `wraps` may be null.
  *
  * # Safety
- * `rail` and `profile` are null or readable for 3 times their number of points, `factors` for `nb_rail` doubles; `points` is null
- * or writable for `3 * capacity` doubles, the other outputs for one int.
+ * `rail` and `profile` are null or readable for 3 times their number of points, `factors` for `nb_rail` doubles;
+ * `points` is null or writable for `3 * capacity` doubles, the other outputs for one int.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalTranslation(const double *rail,
@@ -2855,14 +2870,14 @@ enum shapeop_err shapeop_canalTranslation(const double *rail,
                                           int *wraps);
 
 /**
- * Tells the centers of inversion that map four points of a circle, in order round it, to the corners of an isosceles trapezoid with
- * the parallel sides `P1 P2` and `P4 P3`. Each output may be null: the circle through them; the circle of centers, 7 doubles as
- * all circles, or if `is_line` is 1 the line: a point, a unit vector, and 0; and the two ends of the open interval of
- * ratios of the parallel sides for which there are solutions.
+ * Tells the centers of inversion that map four points of a circle, in order round it, to the corners of an isosceles
+ * trapezoid with the parallel sides `P1 P2` and `P4 P3`. Each output may be null: the circle through them; the circle
+ * of centers, 7 doubles as all circles, or if `is_line` is 1 the line: a point, a unit vector, and 0; and the two ends
+ * of the open interval of ratios of the parallel sides for which there are solutions.
  *
  * # Safety
- * `corners` is null or readable for 12 doubles; `circle` and `centers` are null or writable for 7, `is_line` for one int,
- * `ratio_limits` for 2 doubles.
+ * `corners` is null or readable for 12 doubles; `circle` and `centers` are null or writable for 7, `is_line` for one
+ * int, `ratio_limits` for 2 doubles.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalCenters(const double *corners,
@@ -2872,12 +2887,14 @@ enum shapeop_err shapeop_canalCenters(const double *corners,
                                       double *ratio_limits);
 
 /**
- * Writes a center of inversion, its angle on the circle of centers and the ratio of the parallel sides that it leads to. Each output
- * may be null. `center_kind` is a `shapeop_canal_center` but `SO_CANAL_CENTER_CHORD`; `center_value` and `center_point` belong to it.
- * `is_infinite` is 1 where the center is at infinity, as no inversion is needed; `center` then is zero.
+ * Writes a center of inversion, its angle on the circle of centers and the ratio of the parallel sides that it leads
+ * to. Each output may be null. `center_kind` is a `shapeop_canal_center` but `SO_CANAL_CENTER_CHORD`; `center_value`
+ * and `center_point` belong to it. `is_infinite` is 1 where the center is at infinity, as no inversion is needed;
+ * `center` then is zero.
  *
  * # Safety
- * `corners` is null or readable for 12 doubles, `center_point` for 3; `center` is null or writable for 3, the others for one value.
+ * `corners` is null or readable for 12 doubles, `center_point` for 3; `center` is null or writable for 3, the others
+ * for one value.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalCenter(const double *corners,
@@ -2890,14 +2907,14 @@ enum shapeop_err shapeop_canalCenter(const double *corners,
                                      double *ratio);
 
 /**
- * Creates the M-revolution surface over a planar curve, of `columns` points along each arch. The curve runs from the corner `P1` to
- * `P4`; `p2` and `p3` are on one circle with its ends, and `up` is a direction off the plane, to whose side the arches rise. The
- * center is chosen as in `shapeop_canalCenter`. `omega`, its angle, and `axis`, a point and a unit vector of the axis of revolution
- * of the base, may be null. Null if it is refused.
+ * Creates the M-revolution surface over a planar curve, of `columns` points along each arch. The curve runs from the
+ * corner `P1` to `P4`; `p2` and `p3` are on one circle with its ends, and `up` is a direction off the plane, to whose
+ * side the arches rise. The center is chosen as in `shapeop_canalCenter`. `omega`, its angle, and `axis`, a point and
+ * a unit vector of the axis of revolution of the base, may be null. Null if it is refused.
  *
  * # Safety
- * `curve` is null or readable for `3 * nb_curve` doubles, `p2`, `p3`, `center_point` and `up` for 3; `omega` is null or writable for
- * one, `axis` for 6.
+ * `curve` is null or readable for `3 * nb_curve` doubles, `p2`, `p3`, `center_point` and `up` for 3; `omega` is null
+ * or writable for one, `axis` for 6.
  */
 SHAPEOP_API
 struct ShapeOpCanal *shapeop_canalMRevolution(const double *curve,
@@ -2913,8 +2930,9 @@ struct ShapeOpCanal *shapeop_canalMRevolution(const double *curve,
                                               double *axis);
 
 /**
- * As `shapeop_canalMRevolution`, over a curve on a sphere. `pole` is a point of the sphere off the curve, at which it is flattened;
- * null: one that is far from all points. Arches rise outside of the sphere if `is_outside` is 1, inside if it is 0.
+ * As `shapeop_canalMRevolution`, over a curve on a sphere. `pole` is a point of the sphere off the curve, at which it
+ * is flattened; null: one that is far from all points. Arches rise outside of the sphere if `is_outside` is 1, inside
+ * if it is 0.
  *
  * # Safety
  * As `shapeop_canalMRevolution`; `sphere_center` and `pole` are null or readable for 3 doubles.
@@ -2936,15 +2954,16 @@ struct ShapeOpCanal *shapeop_canalSphericalMRevolution(const double *curve,
                                                        double *axis);
 
 /**
- * Creates the M-moulding surface through a planar curve, from `P1` to `P4`, and a rail in space, from `P1`. Column 0 is the curve, row
- * 0 the rail. The center of inversion is the point `center_point` of the curve's plane if `p3` is null; else it is chosen as in
- * `shapeop_canalCenter`, or by `SO_CANAL_CENTER_CHORD`, for the far corner `p3`, which is on one circle with `P1`, `P4` and the
- * rail's end. Each output may be null: `obliquity`, `reversed_count` and `closing_gap` as in `shapeop_canalMoulding`, and the
- * distance of the surface's last corner from `p3` (0 without one). Null if it is refused.
+ * Creates the M-moulding surface through a planar curve, from `P1` to `P4`, and a rail in space, from `P1`. Column 0
+ * is the curve, row 0 the rail. The center of inversion is the point `center_point` of the curve's plane if `p3` is
+ * null; else it is chosen as in `shapeop_canalCenter`, or by `SO_CANAL_CENTER_CHORD`, for the far corner `p3`, which
+ * is on one circle with `P1`, `P4` and the rail's end. Each output may be null: `obliquity`, `reversed_count` and
+ * `closing_gap` as in `shapeop_canalMoulding`, and the distance of the surface's last corner from `p3` (0 without
+ * one). Null if it is refused.
  *
  * # Safety
- * `curve` and `rail` are null or readable for 3 times their number of points, `p3` and `center_point` for 3 doubles; each output is
- * null or writable for one value.
+ * `curve` and `rail` are null or readable for 3 times their number of points, `p3` and `center_point` for 3 doubles;
+ * each output is null or writable for one value.
  */
 SHAPEOP_API
 struct ShapeOpCanal *shapeop_canalMMoulding(const double *curve,
@@ -2961,18 +2980,20 @@ struct ShapeOpCanal *shapeop_canalMMoulding(const double *curve,
                                             double *corner_gap);
 
 /**
- * Creates the C-canal surface along `guide` whose row 0 is the convex planar polyline `section`, which starts at the guide's first point.
- * The far ends of the sections are at the distances `lengths` from the guide, one for each of its points, the first that of the
- * section; or, if `lengths` is null, on a second curve, the spline through `curve`. If `projects_lengths` is 1 a length that is not
- * attainable is replaced by the nearest that is. `progress`, which may be null, can cancel: the surface then ends where it was.
+ * Creates the C-canal surface along `guide` whose row 0 is the convex planar polyline `section`, which starts at the
+ * guide's first point. The far ends of the sections are at the distances `lengths` from the guide, one for each of its
+ * points, the first that of the section; or, if `lengths` is null, on a second curve, the spline through `curve`. If
+ * `projects_lengths` is 1 a length that is not attainable is replaced by the nearest that is. `progress`, which may be
+ * null, can cancel: the surface then ends where it was.
  *
- * Each output may be null; all have one entry for each row of the surface, of which there are at most `nb_guide`: the distances made,
- * how far each is off, the least and the greatest attainable ones, and whether a length was replaced. Null if it is refused.
+ * Each output may be null; all have one entry for each row of the surface, of which there are at most `nb_guide`: the
+ * distances made, how far each is off, the least and the greatest attainable ones, and whether a length was replaced.
+ * Null if it is refused.
  *
  * # Safety
- * `guide`, `section` and `curve` are null or readable for 3 times their number of points, `lengths` for `nb_guide` doubles; `out_lengths`,
- * `deviations` and `is_projected` are null or writable for `nb_guide` values, `attainable` for twice as many, `is_cancelled` for one.
- * `progress` is null or a function of that signature.
+ * `guide`, `section` and `curve` are null or readable for 3 times their number of points, `lengths` for `nb_guide`
+ * doubles; `out_lengths`, `deviations` and `is_projected` are null or writable for `nb_guide` values, `attainable` for
+ * twice as many, `is_cancelled` for one. `progress` is null or a function of that signature.
  */
 SHAPEOP_API
 struct ShapeOpCanal *shapeop_canalCCanal(const double *guide,
@@ -3003,8 +3024,9 @@ SHAPEOP_API int shapeop_canalFamilyCount(void);
 SHAPEOP_API const char *shapeop_canalFamilyName(int index);
 
 /**
- * Writes how surfaces of a family are made: the `shapeop_canal_kind` of the base to `kind`, which may be null, and, if there is room
- * for `capacity` of them, the `shapeop_canal_step` of each transformation after it; `count` is their number.
+ * Writes how surfaces of a family are made: the `shapeop_canal_kind` of the base to `kind`, which may be null, and, if
+ * there is room for `capacity` of them, the `shapeop_canal_step` of each transformation after it; `count` is their
+ * number.
  *
  * # Safety
  * `name` is null or ends with a zero; `steps` is null or writable for `capacity` ints, `kind` and `count` for one.
@@ -3017,7 +3039,8 @@ enum shapeop_err shapeop_canalFamilySteps(const char *name,
                                           int *count);
 
 /**
- * Measures a surface and writes what was found to `out`, whose `struct_size` must be set. It may take seconds for large nets.
+ * Measures a surface and writes what was found to `out`, whose `struct_size` must be set. It may take seconds for
+ * large nets.
  *
  * # Safety
  * `out` is null, or its `struct_size` is set and it is writable for so many bytes.
@@ -3027,13 +3050,13 @@ enum shapeop_err shapeop_canalProperties(struct ShapeOpCanal *surface,
                                          struct shapeop_canal_properties *out);
 
 /**
- * Writes the node axes of a circular grid, a unit vector for each point, that are handed on by reflection from `first` at point
- * (0, 0): beams between them are planar and meet in the axes without torsion. `gaps`, which may be null, are the differences
- * between the depths along each axis down to which beams of height 1 reach.
+ * Writes the node axes of a circular grid, a unit vector for each point, that are handed on by reflection from `first`
+ * at point (0, 0): beams between them are planar and meet in the axes without torsion. `gaps`, which may be null, are
+ * the differences between the depths along each axis down to which beams of height 1 reach.
  *
  * # Safety
- * `points` is null or readable, `axes` null or writable, for `3 * rows * columns` doubles; `first` is readable for 3, `gaps` null or
- * writable for `rows * columns`.
+ * `points` is null or readable, `axes` null or writable, for `3 * rows * columns` doubles; `first` is readable for 3,
+ * `gaps` null or writable for `rows * columns`.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalNodeAxes(const double *points,
@@ -3045,11 +3068,12 @@ enum shapeop_err shapeop_canalNodeAxes(const double *points,
                                        double *gaps);
 
 /**
- * As `shapeop_canalNodeAxes`, with the first axis for which the sum of the squared gaps is least. `progress` may be null; a
- * cancelled search gives the best so far, and `is_cancelled`, which may be null, is 1.
+ * As `shapeop_canalNodeAxes`, with the first axis for which the sum of the squared gaps is least. `progress` may be
+ * null; a cancelled search gives the best so far, and `is_cancelled`, which may be null, is 1.
  *
  * # Safety
- * As `shapeop_canalNodeAxes`; `is_cancelled` is null or writable for one int, `progress` null or a function of that signature.
+ * As `shapeop_canalNodeAxes`; `is_cancelled` is null or writable for one int, `progress` null or a function of that
+ * signature.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalNodeAxesOfLeastGaps(const double *points,
@@ -3063,12 +3087,12 @@ enum shapeop_err shapeop_canalNodeAxesOfLeastGaps(const double *points,
                                                   int *is_cancelled);
 
 /**
- * Writes, for given axes, the gap at each point for beams of height 1, and the depth along each axis down to which the deepest beam
- * of `height` reaches. Each output may be null.
+ * Writes, for given axes, the gap at each point for beams of height 1, and the depth along each axis down to which the
+ * deepest beam of `height` reaches. Each output may be null.
  *
  * # Safety
- * `points` and `axes` are null or readable for `3 * rows * columns` doubles; `gaps` and `depths` are null or writable for
- * `rows * columns`.
+ * `points` and `axes` are null or readable for `3 * rows * columns` doubles; `gaps` and `depths` are null or writable
+ * for `rows * columns`.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalNodeGaps(const double *points,
@@ -3081,7 +3105,8 @@ enum shapeop_err shapeop_canalNodeGaps(const double *points,
                                        double *depths);
 
 /**
- * Writes a grid moved by `distance` along its axes. Along the normals of the frames of a circular grid all edges stay parallel.
+ * Writes a grid moved by `distance` along its axes. Along the normals of the frames of a circular grid all edges stay
+ * parallel.
  *
  * # Safety
  * `points` and `axes` are null or readable, `out` is null or writable, for `3 * rows * columns` doubles.
@@ -3096,13 +3121,13 @@ enum shapeop_err shapeop_canalOffset(const double *points,
                                      double *out);
 
 /**
- * Writes a planar beam along every edge, `height` measured along each axis, against it: first the edges from row to row, then
- * those from column to column. `nodes` has 2 point indices for each, `corners` its 4 corners. They are written if there is
- * room for `capacity` beams; `count` is their number. `nodes` may be null.
+ * Writes a planar beam along every edge, `height` measured along each axis, against it: first the edges from row to
+ * row, then those from column to column. `nodes` has 2 point indices for each, `corners` its 4 corners. They are
+ * written if there is room for `capacity` beams; `count` is their number. `nodes` may be null.
  *
  * # Safety
- * `points` and `axes` are null or readable for `3 * rows * columns` doubles; `nodes` is null or writable for `2 * capacity` ints,
- * `corners` for `12 * capacity` doubles, `count` for one int.
+ * `points` and `axes` are null or readable for `3 * rows * columns` doubles; `nodes` is null or writable for `2 *
+ * capacity` ints, `corners` for `12 * capacity` doubles, `count` for one int.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalBeams(const double *points,
@@ -3117,15 +3142,15 @@ enum shapeop_err shapeop_canalBeams(const double *points,
                                     int *count);
 
 /**
- * Lays every face of a grid into a plane, with the axes at its corners. One entry for each face; each output may be null:
- * `outlines`, 4 corners with x and y, the first the origin, the second on +x; `lower_outlines`, those of the lower side at
- * `thickness` below, cut along the mitres; `mitres`, per edge the angle in radians between its cut, which contains the axes, and the
- * panel's normal; `circles` through the corners, 7 doubles, zeros where three corners are on a line; `heights`, how far a corner is
- * from the panel's plane.
+ * Lays every face of a grid into a plane, with the axes at its corners. One entry for each face; each output may be
+ * null: `outlines`, 4 corners with x and y, the first the origin, the second on +x; `lower_outlines`, those of the
+ * lower side at `thickness` below, cut along the mitres; `mitres`, per edge the angle in radians between its cut,
+ * which contains the axes, and the panel's normal; `circles` through the corners, 7 doubles, zeros where three corners
+ * are on a line; `heights`, how far a corner is from the panel's plane.
  *
  * # Safety
- * `points` and `axes` are null or readable for `3 * rows * columns` doubles; for each face `outlines` and `lower_outlines` are null
- * or writable for 8 doubles, `mitres` for 4, `circles` for 7, `heights` for one.
+ * `points` and `axes` are null or readable for `3 * rows * columns` doubles; for each face `outlines` and
+ * `lower_outlines` are null or writable for 8 doubles, `mitres` for 4, `circles` for 7, `heights` for one.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_canalPanels(const double *points,
@@ -3141,8 +3166,9 @@ enum shapeop_err shapeop_canalPanels(const double *points,
                                      double *heights);
 
 /**
- * The JSON form (`docs/canal-parts.schema.json`) of the panels and beams of a grid with given axes: panels with a lower outline where
- * `thickness` is above 0, beams of `height`. Null if it is refused. Valid as long as the text of `shapeop_canalText`.
+ * The JSON form (`docs/canal-parts.schema.json`) of the panels and beams of a grid with given axes: panels with a
+ * lower outline where `thickness` is above 0, beams of `height`. Null if it is refused. Valid as long as the text of
+ * `shapeop_canalText`.
  *
  * # Safety
  * `points` and `axes` are null or readable for `3 * rows * columns` doubles.

@@ -179,14 +179,17 @@ namespace ShapeOp
         Above = 3,
     }
 
-    /// <summary>Which center of inversion an M-revolution surface takes: a point of the circle of centers, see shapeop_canalCenters.</summary>
+    /// <summary>
+    /// Which center of inversion an M-revolution surface takes: a point of the circle of centers, see
+    /// shapeop_canalCenters.
+    /// </summary>
     public enum CanalCenter
     {
         /// <summary>The middle of the outer arc of the circle of centers.</summary>
         Middle = 0,
         /// <summary>
-        /// The point at the angle center_value, in radians, on the circle of centers: 0 is the middle of the inner arc, pi that of the
-        /// outer one.
+        /// The point at the angle center_value, in radians, on the circle of centers: 0 is the middle of the inner arc,
+        /// pi that of the outer one.
         /// </summary>
         Angle = 1,
         /// <summary>The point inside the given circle for which the parallel sides have the ratio center_value.</summary>

@@ -18,18 +18,20 @@ use crate::geometry::canal::families::Family;
 use crate::geometry::canal::properties::Properties;
 use crate::mesh::curve::NearestOnCurve;
 
-/// Creates the C-canal surface along `guide` whose row 0 is the convex planar polyline `section`, which starts at the guide's first point.
-/// The far ends of the sections are at the distances `lengths` from the guide, one for each of its points, the first that of the
-/// section; or, if `lengths` is null, on a second curve, the spline through `curve`. If `projects_lengths` is 1 a length that is not
-/// attainable is replaced by the nearest that is. `progress`, which may be null, can cancel: the surface then ends where it was.
+/// Creates the C-canal surface along `guide` whose row 0 is the convex planar polyline `section`, which starts at the
+/// guide's first point. The far ends of the sections are at the distances `lengths` from the guide, one for each of its
+/// points, the first that of the section; or, if `lengths` is null, on a second curve, the spline through `curve`. If
+/// `projects_lengths` is 1 a length that is not attainable is replaced by the nearest that is. `progress`, which may be
+/// null, can cancel: the surface then ends where it was.
 ///
-/// Each output may be null; all have one entry for each row of the surface, of which there are at most `nb_guide`: the distances made,
-/// how far each is off, the least and the greatest attainable ones, and whether a length was replaced. Null if it is refused.
+/// Each output may be null; all have one entry for each row of the surface, of which there are at most `nb_guide`: the
+/// distances made, how far each is off, the least and the greatest attainable ones, and whether a length was replaced.
+/// Null if it is refused.
 ///
 /// # Safety
-/// `guide`, `section` and `curve` are null or readable for 3 times their number of points, `lengths` for `nb_guide` doubles; `out_lengths`,
-/// `deviations` and `is_projected` are null or writable for `nb_guide` values, `attainable` for twice as many, `is_cancelled` for one.
-/// `progress` is null or a function of that signature.
+/// `guide`, `section` and `curve` are null or readable for 3 times their number of points, `lengths` for `nb_guide`
+/// doubles; `out_lengths`, `deviations` and `is_projected` are null or writable for `nb_guide` values, `attainable` for
+/// twice as many, `is_cancelled` for one. `progress` is null or a function of that signature.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalCCanal(
     guide: *const f64,
@@ -130,8 +132,9 @@ pub extern "C" fn shapeop_canalFamilyName(index: c_int) -> *const c_char {
     name.unwrap_or(std::ptr::null())
 }
 
-/// Writes how surfaces of a family are made: the `shapeop_canal_kind` of the base to `kind`, which may be null, and, if there is room
-/// for `capacity` of them, the `shapeop_canal_step` of each transformation after it; `count` is their number.
+/// Writes how surfaces of a family are made: the `shapeop_canal_kind` of the base to `kind`, which may be null, and, if
+/// there is room for `capacity` of them, the `shapeop_canal_step` of each transformation after it; `count` is their
+/// number.
 ///
 /// # Safety
 /// `name` is null or ends with a zero; `steps` is null or writable for `capacity` ints, `kind` and `count` for one.
@@ -197,7 +200,8 @@ unsafe impl SizedStruct for shapeop_canal_properties {
     const SIZES: &'static [usize] = &[size_of::<shapeop_canal_properties>()];
 }
 
-/// Measures a surface and writes what was found to `out`, whose `struct_size` must be set. It may take seconds for large nets.
+/// Measures a surface and writes what was found to `out`, whose `struct_size` must be set. It may take seconds for
+/// large nets.
 ///
 /// # Safety
 /// `out` is null, or its `struct_size` is set and it is writable for so many bytes.

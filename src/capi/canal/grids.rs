@@ -13,13 +13,14 @@ use crate::geometry::canal::parallel::{ParallelMeshes, check_parallel_edges};
 use crate::geometry::canal::quality::Quality;
 use crate::mesh::Grid;
 
-/// Measures how circular quads are; `quads` has 4 point indices for each. Each output may be null: `planarity` is the distance of
-/// a quad's diagonals over its mean edge, `concyclicity` that of a corner from the circle through the other three over its radius,
-/// `is_in_order` whether the corners follow each other around it, so that the quad does not cross itself.
+/// Measures how circular quads are; `quads` has 4 point indices for each. Each output may be null: `planarity` is the
+/// distance of a quad's diagonals over its mean edge, `concyclicity` that of a corner from the circle through the other
+/// three over its radius, `is_in_order` whether the corners follow each other around it, so that the quad does not
+/// cross itself.
 ///
 /// # Safety
-/// `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; each output is null or writable for
-/// `nb_quads` values.
+/// `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; each output is null or
+/// writable for `nb_quads` values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalCheckCircular(
     points: *const f64,
@@ -44,12 +45,12 @@ pub unsafe extern "C" fn shapeop_canalCheckCircular(
     }))
 }
 
-/// Compares the edges of two meshes with the same points, pairs of point indices: writes the largest sine of the angle between an
-/// edge and its counterpart, and how many point the other way. Each output may be null.
+/// Compares the edges of two meshes with the same points, pairs of point indices: writes the largest sine of the angle
+/// between an edge and its counterpart, and how many point the other way. Each output may be null.
 ///
 /// # Safety
-/// `a` and `b` are null or readable for `3 * nb_points` doubles, `edges` for `2 * nb_edges` ints; each output is null or writable
-/// for one value.
+/// `a` and `b` are null or readable for `3 * nb_points` doubles, `edges` for `2 * nb_edges` ints; each output is null
+/// or writable for one value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalCheckParallel(
     a: *const f64,
@@ -101,11 +102,13 @@ unsafe fn tell_lengths(lengths: Lengths, column: *mut f64, row: *mut f64) -> Res
     outputs.write()
 }
 
-/// Writes the lengths of a grid's edges along column 0, from row to row, and along row 0: one fewer than points there, as many
-/// where the direction wraps. `rows` times `columns` points, row by row; `wraps`: `SHAPEOP_WRAPS_ROWS`, `SHAPEOP_WRAPS_COLUMNS`.
+/// Writes the lengths of a grid's edges along column 0, from row to row, and along row 0: one fewer than points there,
+/// as many where the direction wraps. `rows` times `columns` points, row by row; `wraps`: `SHAPEOP_WRAPS_ROWS`,
+/// `SHAPEOP_WRAPS_COLUMNS`.
 ///
 /// # Safety
-/// `points` is null or readable for `3 * rows * columns` doubles; `column` and `row` are null or writable for the lengths.
+/// `points` is null or readable for `3 * rows * columns` doubles; `column` and `row` are null or writable for the
+/// lengths.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalGridLengths(
     points: *const f64,
@@ -119,12 +122,12 @@ pub unsafe extern "C" fn shapeop_canalGridLengths(
     code(guard_free(|| unsafe { tell_lengths(Lengths::of(&io::grid(points, rows, columns, wraps)?), column, row) }))
 }
 
-/// Writes the lengths for `shapeop_canalCombescure` along two polylines that replace column 0 and row 0 and whose edges are
-/// parallel to theirs; below 0 where they point the other way. A polyline has one point more than edges.
+/// Writes the lengths for `shapeop_canalCombescure` along two polylines that replace column 0 and row 0 and whose edges
+/// are parallel to theirs; below 0 where they point the other way. A polyline has one point more than edges.
 ///
 /// # Safety
-/// `points` is null or readable for `3 * rows * columns` doubles, each polyline for 3 times its number of points; `column` and
-/// `row` are null or writable for one double per edge.
+/// `points` is null or readable for `3 * rows * columns` doubles, each polyline for 3 times its number of points;
+/// `column` and `row` are null or writable for one double per edge.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalPolylineLengths(
     points: *const f64,
@@ -150,8 +153,8 @@ pub unsafe extern "C" fn shapeop_canalPolylineLengths(
 /// Writes the lengths nearest to the given ones, by least squares, with which a grid that wraps closes.
 ///
 /// # Safety
-/// `points` is null or readable for `3 * rows * columns` doubles; `column` and `out_column` are null or readable and writable for
-/// `nb_column` doubles, `row` and `out_row` for `nb_row`.
+/// `points` is null or readable for `3 * rows * columns` doubles; `column` and `out_column` are null or readable and
+/// writable for `nb_column` doubles, `row` and `out_row` for `nb_row`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalCloseLengths(
     points: *const f64,
@@ -173,13 +176,13 @@ pub unsafe extern "C" fn shapeop_canalCloseLengths(
     }))
 }
 
-/// Writes the grid parallel to a circular one whose edges along column 0 and row 0 have given lengths, in model units, below 0
-/// where they point the other way; it is circular again. `origin` is its point (0, 0), that of the grid itself if null;
-/// `reversed_count`, which may be null, the number of edges that point the other way.
+/// Writes the grid parallel to a circular one whose edges along column 0 and row 0 have given lengths, in model units,
+/// below 0 where they point the other way; it is circular again. `origin` is its point (0, 0), that of the grid itself
+/// if null; `reversed_count`, which may be null, the number of edges that point the other way.
 ///
 /// # Safety
-/// `points` is null or readable, `out` null or writable, for `3 * rows * columns` doubles; `column` and `row` are null or readable
-/// for their numbers of doubles, `origin` for 3; `reversed_count` is null or writable for one int.
+/// `points` is null or readable, `out` null or writable, for `3 * rows * columns` doubles; `column` and `row` are null
+/// or readable for their numbers of doubles, `origin` for 3; `reversed_count` is null or writable for one int.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalCombescure(
     points: *const f64,
@@ -209,13 +212,13 @@ pub unsafe extern "C" fn shapeop_canalCombescure(
     }))
 }
 
-/// Computes an orthonormal basis of the space of all meshes parallel to a mesh of quads, at most 1000 points, each of them in a
-/// face: `dimension` vectors, each `x0 y0 z0 x1 ...`. They are written behind each other if `capacity`, counted in vectors,
-/// suffices; with null and 0 only the dimension is told.
+/// Computes an orthonormal basis of the space of all meshes parallel to a mesh of quads, at most 1000 points, each of
+/// them in a face: `dimension` vectors, each `x0 y0 z0 x1 ...`. They are written behind each other if `capacity`,
+/// counted in vectors, suffices; with null and 0 only the dimension is told.
 ///
 /// # Safety
-/// `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; `basis` is null or writable for
-/// `3 * nb_points * capacity` doubles, `dimension` for one int.
+/// `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; `basis` is null or
+/// writable for `3 * nb_points * capacity` doubles, `dimension` for one int.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalParallelSpace(
     points: *const f64,
@@ -239,8 +242,9 @@ pub unsafe extern "C" fn shapeop_canalParallelSpace(
     }))
 }
 
-/// Writes, of all meshes parallel to a mesh of quads, the one whose points `handles` are nearest to `targets` by the sum of squares;
-/// among equally near ones that nearest to the mesh itself. The mesh is as for `shapeop_canalParallelSpace`.
+/// Writes, of all meshes parallel to a mesh of quads, the one whose points `handles` are nearest to `targets` by the
+/// sum of squares; among equally near ones that nearest to the mesh itself. The mesh is as for
+/// `shapeop_canalParallelSpace`.
 ///
 /// # Safety
 /// `points` is null or readable, `out` null or writable, for `3 * nb_points` doubles; `quads` is null or readable for
@@ -272,13 +276,13 @@ pub unsafe extern "C" fn shapeop_canalNearestParallel(
     }))
 }
 
-/// Sorts a mesh of quads into grids: `grid_count` is the number of its components, and `rows`, `columns` and `wraps` are those of
-/// component `component`. Its point (i, j) is point `indices[i * columns + j]` of the mesh; they are written if there is room for
-/// `capacity` of them, and `count` is their number. The other outputs may be null.
+/// Sorts a mesh of quads into grids: `grid_count` is the number of its components, and `rows`, `columns` and `wraps`
+/// are those of component `component`. Its point (i, j) is point `indices[i * columns + j]` of the mesh; they are
+/// written if there is room for `capacity` of them, and `count` is their number. The other outputs may be null.
 ///
 /// # Safety
-/// `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; `indices` is null or writable for
-/// `capacity` ints, all other outputs for one.
+/// `points` is null or readable for `3 * nb_points` doubles, `quads` for `4 * nb_quads` ints; `indices` is null or
+/// writable for `capacity` ints, all other outputs for one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalGridOfMesh(
     points: *const f64,
@@ -312,8 +316,8 @@ pub unsafe extern "C" fn shapeop_canalGridOfMesh(
     }))
 }
 
-/// Writes the frame (9 doubles: the unit vectors `t1`, `t2` and the normal `t1 x t2`) whose normal has the spherical coordinates
-/// `theta`, from +z, and `lambda`, from +x about +z, turned about it by `psi`, all in radians.
+/// Writes the frame (9 doubles: the unit vectors `t1`, `t2` and the normal `t1 x t2`) whose normal has the spherical
+/// coordinates `theta`, from +z, and `lambda`, from +x about +z, turned about it by `psi`, all in radians.
 ///
 /// # Safety
 /// `out` is null or writable for 9 doubles.
@@ -338,8 +342,8 @@ fn direction(number: c_int) -> Result<Direction> {
     }
 }
 
-/// Writes the frame that has the tangent `tangent`, of any length but 0, in `direction` 1 (from row to row) or 2 (from column to
-/// column), and whose normal is as near as possible to `normal`.
+/// Writes the frame that has the tangent `tangent`, of any length but 0, in `direction` 1 (from row to row) or 2 (from
+/// column to column), and whose normal is as near as possible to `normal`.
 ///
 /// # Safety
 /// `tangent` and `normal` are null or readable for 3 doubles; `out` is null or writable for 9.
@@ -371,8 +375,8 @@ pub unsafe extern "C" fn shapeop_canalFrameOfTangent(
     }))
 }
 
-/// Writes the frame at the other end of an edge in `direction` 1 or 2: the mirror image in the plane that bisects it, with the
-/// tangent of that direction turned round. `frame` has the unit vectors `t1` and `t2`, 6 doubles; `out` has 9.
+/// Writes the frame at the other end of an edge in `direction` 1 or 2: the mirror image in the plane that bisects it,
+/// with the tangent of that direction turned round. `frame` has the unit vectors `t1` and `t2`, 6 doubles; `out` has 9.
 ///
 /// # Safety
 /// `frame` is null or readable for 6 doubles, `edge` for 3; `out` is null or writable for 9.
@@ -394,8 +398,8 @@ pub unsafe extern "C" fn shapeop_canalFrameAcross(
     }))
 }
 
-/// Writes the frames at all points of a circular grid, 9 doubles each, from that at point (0, 0): `frame`, the unit vectors `t1` and
-/// `t2`. `closing_gap`, which may be null, is that of `shapeop_canalClosingGap`.
+/// Writes the frames at all points of a circular grid, 9 doubles each, from that at point (0, 0): `frame`, the unit
+/// vectors `t1` and `t2`. `closing_gap`, which may be null, is that of `shapeop_canalClosingGap`.
 ///
 /// # Safety
 /// `points` is null or readable for `3 * rows * columns` doubles, `frame` for 6; `out` is null or writable for
@@ -429,12 +433,14 @@ pub const SHAPEOP_FACE_FLIPPED: c_int = 1;
 /// A bit of the flags of `shapeop_canalFolds`: an edge of the face is shorter than a twentieth of the one opposite.
 pub const SHAPEOP_FACE_SHRUNK: c_int = 2;
 
-/// Looks for folds of a grid whose column 0 is the guide. Each output may be null: per row `evolute_ratios`, how far its section
-/// reaches towards the evolute of the guide (1: up to it; 0 where the guide is straight) and `is_near_evolute` (from 0.8 on); per
-/// face `edge_ratios`, the least ratio of opposite edges, and `face_flags`, bits `SHAPEOP_FACE_...`.
+/// Looks for folds of a grid whose column 0 is the guide. Each output may be null: per row `evolute_ratios`, how far
+/// its section reaches towards the evolute of the guide (1: up to it; 0 where the guide is straight) and
+/// `is_near_evolute` (from 0.8 on); per face `edge_ratios`, the least ratio of opposite edges, and `face_flags`, bits
+/// `SHAPEOP_FACE_...`.
 ///
 /// # Safety
-/// `points` is null or readable for `3 * rows * columns` doubles; each output is null or writable for one value per row or face.
+/// `points` is null or readable for `3 * rows * columns` doubles; each output is null or writable for one value per row
+/// or face.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalFolds(
     points: *const f64,

@@ -74,11 +74,13 @@ pub unsafe extern "C" fn shapeop_canalInvertComplex(
     }))
 }
 
-/// Writes the image of a circle: its center, the unit vector along its axis and its radius, 7 doubles, as it is given. A circle
-/// through the center of inversion goes to a line: `is_line` then is 1, and `out` a point of it, a unit vector along it, and 0.
+/// Writes the image of a circle: its center, the unit vector along its axis and its radius, 7 doubles, as it is given.
+/// A circle through the center of inversion goes to a line: `is_line` then is 1, and `out` a point of it, a unit vector
+/// along it, and 0.
 ///
 /// # Safety
-/// `circle` is null or readable for 7 doubles, `center` for 3; `out` is null or writable for 7 doubles, `is_line` for one int.
+/// `circle` is null or readable for 7 doubles, `center` for 3; `out` is null or writable for 7 doubles, `is_line` for
+/// one int.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalInvertCircle(
     circle: *const f64,
@@ -128,11 +130,13 @@ unsafe fn tell_sphere(image: GeneralSphere, out: *mut f64, is_plane: *mut c_int)
     outputs.write()
 }
 
-/// Writes the image of a sphere. Either `is_plane` is 0 and `out` has a sphere: its center, three zeros, and its radius. Or, for a
-/// sphere through the center of inversion, it is 1 and `out` has a plane: a point, the unit normal, and 0.
+/// Writes the image of a sphere. Either `is_plane` is 0 and `out` has a sphere: its center, three zeros, and its
+/// radius. Or, for a sphere through the center of inversion, it is 1 and `out` has a plane: a point, the unit normal,
+/// and 0.
 ///
 /// # Safety
-/// `sphere_center` and `center` are null or readable for 3 doubles; `out` is null or writable for 7, `is_plane` for one int.
+/// `sphere_center` and `center` are null or readable for 3 doubles; `out` is null or writable for 7, `is_plane` for one
+/// int.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalInvertSphere(
     sphere_center: *const f64,
@@ -159,7 +163,8 @@ pub unsafe extern "C" fn shapeop_canalInvertSphere(
 /// As `shapeop_canalInvertSphere`, for the plane through a point with a normal of any length but 0.
 ///
 /// # Safety
-/// `point`, `normal` and `center` are null or readable for 3 doubles; `out` is null or writable for 7, `is_plane` for one int.
+/// `point`, `normal` and `center` are null or readable for 3 doubles; `out` is null or writable for 7, `is_plane` for
+/// one int.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalInvertPlane(
     point: *const f64,

@@ -1,4 +1,4 @@
-//! From C arrays to what the geometry takes, and back: inputs are checked first, and outputs are written last, all or none.
+//! From C arrays to what the geometry takes, and back: inputs are checked first, outputs are written last, all or none.
 
 use std::ffi::{c_int, c_void};
 use std::ops::ControlFlow;
@@ -52,8 +52,11 @@ pub(super) unsafe fn vector(name: &str, data: *const f64) -> Result<DVec3> {
 /// # Safety
 /// `data` is null or readable for 3 doubles.
 pub(super) unsafe fn optional_vector(name: &str, data: *const f64) -> Result<Option<DVec3>> {
+    if data.is_null() {
+        return Ok(None);
+    }
     // SAFETY: the caller vouches for 3 doubles.
-    if data.is_null() { Ok(None) } else { unsafe { vector(name, data) }.map(Some) }
+    unsafe { vector(name, data) }.map(Some)
 }
 
 /// 0 or 1.
@@ -301,12 +304,15 @@ impl Outputs {
     /// # Safety
     /// `out` is null or writable for so many values.
     pub(super) unsafe fn may<T: Value>(&mut self, name: &str, out: *mut T, values: Vec<T>) -> Result<()> {
+        if out.is_null() {
+            return Ok(());
+        }
         // SAFETY: the caller vouches for it.
-        if out.is_null() { Ok(()) } else { unsafe { self.must(name, out, values) } }
+        unsafe { self.must(name, out, values) }
     }
 
-    /// Values for an output of a stated capacity, in units of `unit` values, and their number for `count`. The values are
-    /// written if they fit; the number always.
+    /// Values for an output of a stated capacity, in units of `unit` values, and their number for `count`. The values
+    /// are written if they fit; the number always.
     ///
     /// # Safety
     /// `out` is null or writable for `unit * capacity` values, `count` for one int.

@@ -25,13 +25,13 @@ unsafe fn tell_axes(found: NodeAxes, axes: *mut f64, gaps: *mut f64) -> Result<O
     Ok(outputs)
 }
 
-/// Writes the node axes of a circular grid, a unit vector for each point, that are handed on by reflection from `first` at point
-/// (0, 0): beams between them are planar and meet in the axes without torsion. `gaps`, which may be null, are the differences
-/// between the depths along each axis down to which beams of height 1 reach.
+/// Writes the node axes of a circular grid, a unit vector for each point, that are handed on by reflection from `first`
+/// at point (0, 0): beams between them are planar and meet in the axes without torsion. `gaps`, which may be null, are
+/// the differences between the depths along each axis down to which beams of height 1 reach.
 ///
 /// # Safety
-/// `points` is null or readable, `axes` null or writable, for `3 * rows * columns` doubles; `first` is readable for 3, `gaps` null or
-/// writable for `rows * columns`.
+/// `points` is null or readable, `axes` null or writable, for `3 * rows * columns` doubles; `first` is readable for 3,
+/// `gaps` null or writable for `rows * columns`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalNodeAxes(
     points: *const f64,
@@ -49,11 +49,12 @@ pub unsafe extern "C" fn shapeop_canalNodeAxes(
     }))
 }
 
-/// As `shapeop_canalNodeAxes`, with the first axis for which the sum of the squared gaps is least. `progress` may be null; a
-/// cancelled search gives the best so far, and `is_cancelled`, which may be null, is 1.
+/// As `shapeop_canalNodeAxes`, with the first axis for which the sum of the squared gaps is least. `progress` may be
+/// null; a cancelled search gives the best so far, and `is_cancelled`, which may be null, is 1.
 ///
 /// # Safety
-/// As `shapeop_canalNodeAxes`; `is_cancelled` is null or writable for one int, `progress` null or a function of that signature.
+/// As `shapeop_canalNodeAxes`; `is_cancelled` is null or writable for one int, `progress` null or a function of that
+/// signature.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalNodeAxesOfLeastGaps(
     points: *const f64,
@@ -99,12 +100,12 @@ unsafe fn grid_and_axes(
     }
 }
 
-/// Writes, for given axes, the gap at each point for beams of height 1, and the depth along each axis down to which the deepest beam
-/// of `height` reaches. Each output may be null.
+/// Writes, for given axes, the gap at each point for beams of height 1, and the depth along each axis down to which the
+/// deepest beam of `height` reaches. Each output may be null.
 ///
 /// # Safety
-/// `points` and `axes` are null or readable for `3 * rows * columns` doubles; `gaps` and `depths` are null or writable for
-/// `rows * columns`.
+/// `points` and `axes` are null or readable for `3 * rows * columns` doubles; `gaps` and `depths` are null or writable
+/// for `rows * columns`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalNodeGaps(
     points: *const f64,
@@ -129,7 +130,8 @@ pub unsafe extern "C" fn shapeop_canalNodeGaps(
     }))
 }
 
-/// Writes a grid moved by `distance` along its axes. Along the normals of the frames of a circular grid all edges stay parallel.
+/// Writes a grid moved by `distance` along its axes. Along the normals of the frames of a circular grid all edges stay
+/// parallel.
 ///
 /// # Safety
 /// `points` and `axes` are null or readable, `out` is null or writable, for `3 * rows * columns` doubles.
@@ -154,13 +156,13 @@ pub unsafe extern "C" fn shapeop_canalOffset(
     }))
 }
 
-/// Writes a planar beam along every edge, `height` measured along each axis, against it: first the edges from row to row, then
-/// those from column to column. `nodes` has 2 point indices for each, `corners` its 4 corners. They are written if there is
-/// room for `capacity` beams; `count` is their number. `nodes` may be null.
+/// Writes a planar beam along every edge, `height` measured along each axis, against it: first the edges from row to
+/// row, then those from column to column. `nodes` has 2 point indices for each, `corners` its 4 corners. They are
+/// written if there is room for `capacity` beams; `count` is their number. `nodes` may be null.
 ///
 /// # Safety
-/// `points` and `axes` are null or readable for `3 * rows * columns` doubles; `nodes` is null or writable for `2 * capacity` ints,
-/// `corners` for `12 * capacity` doubles, `count` for one int.
+/// `points` and `axes` are null or readable for `3 * rows * columns` doubles; `nodes` is null or writable for `2 *
+/// capacity` ints, `corners` for `12 * capacity` doubles, `count` for one int.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalBeams(
     points: *const f64,
@@ -191,15 +193,15 @@ pub unsafe extern "C" fn shapeop_canalBeams(
     }))
 }
 
-/// Lays every face of a grid into a plane, with the axes at its corners. One entry for each face; each output may be null:
-/// `outlines`, 4 corners with x and y, the first the origin, the second on +x; `lower_outlines`, those of the lower side at
-/// `thickness` below, cut along the mitres; `mitres`, per edge the angle in radians between its cut, which contains the axes, and the
-/// panel's normal; `circles` through the corners, 7 doubles, zeros where three corners are on a line; `heights`, how far a corner is
-/// from the panel's plane.
+/// Lays every face of a grid into a plane, with the axes at its corners. One entry for each face; each output may be
+/// null: `outlines`, 4 corners with x and y, the first the origin, the second on +x; `lower_outlines`, those of the
+/// lower side at `thickness` below, cut along the mitres; `mitres`, per edge the angle in radians between its cut,
+/// which contains the axes, and the panel's normal; `circles` through the corners, 7 doubles, zeros where three corners
+/// are on a line; `heights`, how far a corner is from the panel's plane.
 ///
 /// # Safety
-/// `points` and `axes` are null or readable for `3 * rows * columns` doubles; for each face `outlines` and `lower_outlines` are null
-/// or writable for 8 doubles, `mitres` for 4, `circles` for 7, `heights` for one.
+/// `points` and `axes` are null or readable for `3 * rows * columns` doubles; for each face `outlines` and
+/// `lower_outlines` are null or writable for 8 doubles, `mitres` for 4, `circles` for 7, `heights` for one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalPanels(
     points: *const f64,
@@ -233,8 +235,9 @@ pub unsafe extern "C" fn shapeop_canalPanels(
     }))
 }
 
-/// The JSON form (`docs/canal-parts.schema.json`) of the panels and beams of a grid with given axes: panels with a lower outline where
-/// `thickness` is above 0, beams of `height`. Null if it is refused. Valid as long as the text of `shapeop_canalText`.
+/// The JSON form (`docs/canal-parts.schema.json`) of the panels and beams of a grid with given axes: panels with a
+/// lower outline where `thickness` is above 0, beams of `height`. Null if it is refused. Valid as long as the text of
+/// `shapeop_canalText`.
 ///
 /// # Safety
 /// `points` and `axes` are null or readable for `3 * rows * columns` doubles.

@@ -21,9 +21,9 @@ use crate::geometry::canal::surface::{BaseKind, SuperCanal};
 use crate::geometry::circle::Sphere;
 use crate::mesh::Grid;
 
-/// Creates the surface of revolution of a profile about the axis through `axis_point` along `axis_direction`. Column 0 is the profile,
-/// row `i` runs along the circle of its point `i`, `columns` points from 0 to `angle` (0 to 2 pi, right-handed); a full turn wraps.
-/// Null if it is refused, as a profile is that is not in a plane through the axis.
+/// Creates the surface of revolution of a profile about the axis through `axis_point` along `axis_direction`. Column 0
+/// is the profile, row `i` runs along the circle of its point `i`, `columns` points from 0 to `angle` (0 to 2 pi,
+/// right-handed); a full turn wraps. Null if it is refused, as a profile is that is not in a plane through the axis.
 ///
 /// # Safety
 /// `profile` is null or readable for `3 * nb_profile` doubles, the axis for 3 each.
@@ -78,13 +78,14 @@ unsafe fn swept(
     Ok((SuperCanal::new(Net::new(made.base.grid, made.base.frame)?, kind), outputs))
 }
 
-/// Creates the moulding surface of a planar rail and a profile in an orthogonal plane that starts on it. Column 0 is the rail, row 0
-/// the profile. Each output may be null: the angle, in radians, between the normal of the profile's plane and the rail's start;
-/// how many edges point the other way than the rail's, where the profile reaches beyond the rail's evolute; for a closed rail, how
-/// far the profile is from itself after one turn. Null if it is refused.
+/// Creates the moulding surface of a planar rail and a profile in an orthogonal plane that starts on it. Column 0 is
+/// the rail, row 0 the profile. Each output may be null: the angle, in radians, between the normal of the profile's
+/// plane and the rail's start; how many edges point the other way than the rail's, where the profile reaches beyond the
+/// rail's evolute; for a closed rail, how far the profile is from itself after one turn. Null if it is refused.
 ///
 /// # Safety
-/// `rail` and `profile` are null or readable for 3 times their number of points; each output is null or writable for one value.
+/// `rail` and `profile` are null or readable for 3 times their number of points; each output is null or writable for
+/// one value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalMoulding(
     rail: *const f64,
@@ -103,8 +104,8 @@ pub unsafe extern "C" fn shapeop_canalMoulding(
     })
 }
 
-/// As `shapeop_canalMoulding`, for a rail in space and a planar profile that starts on it: the Monge surface, on which the profile
-/// moves without twist.
+/// As `shapeop_canalMoulding`, for a rail in space and a planar profile that starts on it: the Monge surface, on which
+/// the profile moves without twist.
 ///
 /// # Safety
 /// As `shapeop_canalMoulding`.
@@ -127,7 +128,8 @@ pub unsafe extern "C" fn shapeop_canalMonge(
 }
 
 /// # Safety
-/// `points` is null or writable for `3 * capacity` doubles, `count` for one int; the others are null or writable for one int.
+/// `points` is null or writable for `3 * capacity` doubles, `count` for one int; the others are null or writable for
+/// one int.
 unsafe fn tell_grid(
     grid: &Grid,
     points: *mut f64,
@@ -147,14 +149,15 @@ unsafe fn tell_grid(
     outputs.write()
 }
 
-/// Writes the surface of translation, `rail[i] + profile[j] - profile[0]`, if there is room for `capacity` points, and their number to
-/// `count`. Its quads are planar but not circular, so it is no surface with a handle. With `factors`, one above 0 for each rail
-/// point, it is the surface of scale-translation, `rail[i] + factors[i] (profile[j] - profile[0])`; null for none. A rail or a
-/// profile whose last point repeats the first closes the grid. `rows`, `columns` and `wraps` may be null.
+/// Writes the surface of translation, `rail[i] + profile[j] - profile[0]`, if there is room for `capacity` points, and
+/// their number to `count`. Its quads are planar but not circular, so it is no surface with a handle. With `factors`,
+/// one above 0 for each rail point, it is the surface of scale-translation, `rail[i] + factors[i] (profile[j] -
+/// profile[0])`; null for none. A rail or a profile whose last point repeats the first closes the grid. `rows`,
+/// `columns` and `wraps` may be null.
 ///
 /// # Safety
-/// `rail` and `profile` are null or readable for 3 times their number of points, `factors` for `nb_rail` doubles; `points` is null
-/// or writable for `3 * capacity` doubles, the other outputs for one int.
+/// `rail` and `profile` are null or readable for 3 times their number of points, `factors` for `nb_rail` doubles;
+/// `points` is null or writable for `3 * capacity` doubles, the other outputs for one int.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalTranslation(
     rail: *const f64,
@@ -181,14 +184,15 @@ pub unsafe extern "C" fn shapeop_canalTranslation(
     }))
 }
 
-/// Which center of inversion an M-revolution surface takes: a point of the circle of centers, see `shapeop_canalCenters`.
+/// Which center of inversion an M-revolution surface takes: a point of the circle of centers, see
+/// `shapeop_canalCenters`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub enum shapeop_canal_center {
     /// The middle of the outer arc of the circle of centers.
     SO_CANAL_CENTER_MIDDLE = 0,
-    /// The point at the angle `center_value`, in radians, on the circle of centers: 0 is the middle of the inner arc, pi that of the
-    /// outer one.
+    /// The point at the angle `center_value`, in radians, on the circle of centers: 0 is the middle of the inner arc,
+    /// pi that of the outer one.
     SO_CANAL_CENTER_ANGLE = 1,
     /// The point inside the given circle for which the parallel sides have the ratio `center_value`.
     SO_CANAL_CENTER_RATIO_INSIDE = 2,
@@ -224,14 +228,14 @@ unsafe fn corners(data: *const f64) -> Result<Corners> {
     Corners::new([points[0], points[1], points[2], points[3]])
 }
 
-/// Tells the centers of inversion that map four points of a circle, in order round it, to the corners of an isosceles trapezoid with
-/// the parallel sides `P1 P2` and `P4 P3`. Each output may be null: the circle through them; the circle of centers, 7 doubles as
-/// all circles, or if `is_line` is 1 the line: a point, a unit vector, and 0; and the two ends of the open interval of
-/// ratios of the parallel sides for which there are solutions.
+/// Tells the centers of inversion that map four points of a circle, in order round it, to the corners of an isosceles
+/// trapezoid with the parallel sides `P1 P2` and `P4 P3`. Each output may be null: the circle through them; the circle
+/// of centers, 7 doubles as all circles, or if `is_line` is 1 the line: a point, a unit vector, and 0; and the two ends
+/// of the open interval of ratios of the parallel sides for which there are solutions.
 ///
 /// # Safety
-/// `corners` is null or readable for 12 doubles; `circle` and `centers` are null or writable for 7, `is_line` for one int,
-/// `ratio_limits` for 2 doubles.
+/// `corners` is null or readable for 12 doubles; `circle` and `centers` are null or writable for 7, `is_line` for one
+/// int, `ratio_limits` for 2 doubles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalCenters(
     corners: *const f64,
@@ -260,12 +264,14 @@ pub unsafe extern "C" fn shapeop_canalCenters(
     }))
 }
 
-/// Writes a center of inversion, its angle on the circle of centers and the ratio of the parallel sides that it leads to. Each output
-/// may be null. `center_kind` is a `shapeop_canal_center` but `SO_CANAL_CENTER_CHORD`; `center_value` and `center_point` belong to it.
-/// `is_infinite` is 1 where the center is at infinity, as no inversion is needed; `center` then is zero.
+/// Writes a center of inversion, its angle on the circle of centers and the ratio of the parallel sides that it leads
+/// to. Each output may be null. `center_kind` is a `shapeop_canal_center` but `SO_CANAL_CENTER_CHORD`; `center_value`
+/// and `center_point` belong to it. `is_infinite` is 1 where the center is at infinity, as no inversion is needed;
+/// `center` then is zero.
 ///
 /// # Safety
-/// `corners` is null or readable for 12 doubles, `center_point` for 3; `center` is null or writable for 3, the others for one value.
+/// `corners` is null or readable for 12 doubles, `center_point` for 3; `center` is null or writable for 3, the others
+/// for one value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalCenter(
     corners: *const f64,
@@ -314,14 +320,14 @@ unsafe fn told_m_revolution(made: &MRevolution, omega: *mut f64, axis: *mut f64)
     Ok((inverted(&made.image, BaseKind::Revolution)?, outputs))
 }
 
-/// Creates the M-revolution surface over a planar curve, of `columns` points along each arch. The curve runs from the corner `P1` to
-/// `P4`; `p2` and `p3` are on one circle with its ends, and `up` is a direction off the plane, to whose side the arches rise. The
-/// center is chosen as in `shapeop_canalCenter`. `omega`, its angle, and `axis`, a point and a unit vector of the axis of revolution
-/// of the base, may be null. Null if it is refused.
+/// Creates the M-revolution surface over a planar curve, of `columns` points along each arch. The curve runs from the
+/// corner `P1` to `P4`; `p2` and `p3` are on one circle with its ends, and `up` is a direction off the plane, to whose
+/// side the arches rise. The center is chosen as in `shapeop_canalCenter`. `omega`, its angle, and `axis`, a point and
+/// a unit vector of the axis of revolution of the base, may be null. Null if it is refused.
 ///
 /// # Safety
-/// `curve` is null or readable for `3 * nb_curve` doubles, `p2`, `p3`, `center_point` and `up` for 3; `omega` is null or writable for
-/// one, `axis` for 6.
+/// `curve` is null or readable for `3 * nb_curve` doubles, `p2`, `p3`, `center_point` and `up` for 3; `omega` is null
+/// or writable for one, `axis` for 6.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalMRevolution(
     curve: *const f64,
@@ -346,8 +352,9 @@ pub unsafe extern "C" fn shapeop_canalMRevolution(
     })
 }
 
-/// As `shapeop_canalMRevolution`, over a curve on a sphere. `pole` is a point of the sphere off the curve, at which it is flattened;
-/// null: one that is far from all points. Arches rise outside of the sphere if `is_outside` is 1, inside if it is 0.
+/// As `shapeop_canalMRevolution`, over a curve on a sphere. `pole` is a point of the sphere off the curve, at which it
+/// is flattened; null: one that is far from all points. Arches rise outside of the sphere if `is_outside` is 1, inside
+/// if it is 0.
 ///
 /// # Safety
 /// As `shapeop_canalMRevolution`; `sphere_center` and `pole` are null or readable for 3 doubles.
@@ -381,15 +388,16 @@ pub unsafe extern "C" fn shapeop_canalSphericalMRevolution(
     })
 }
 
-/// Creates the M-moulding surface through a planar curve, from `P1` to `P4`, and a rail in space, from `P1`. Column 0 is the curve, row
-/// 0 the rail. The center of inversion is the point `center_point` of the curve's plane if `p3` is null; else it is chosen as in
-/// `shapeop_canalCenter`, or by `SO_CANAL_CENTER_CHORD`, for the far corner `p3`, which is on one circle with `P1`, `P4` and the
-/// rail's end. Each output may be null: `obliquity`, `reversed_count` and `closing_gap` as in `shapeop_canalMoulding`, and the
-/// distance of the surface's last corner from `p3` (0 without one). Null if it is refused.
+/// Creates the M-moulding surface through a planar curve, from `P1` to `P4`, and a rail in space, from `P1`. Column 0
+/// is the curve, row 0 the rail. The center of inversion is the point `center_point` of the curve's plane if `p3` is
+/// null; else it is chosen as in `shapeop_canalCenter`, or by `SO_CANAL_CENTER_CHORD`, for the far corner `p3`, which
+/// is on one circle with `P1`, `P4` and the rail's end. Each output may be null: `obliquity`, `reversed_count` and
+/// `closing_gap` as in `shapeop_canalMoulding`, and the distance of the surface's last corner from `p3` (0 without
+/// one). Null if it is refused.
 ///
 /// # Safety
-/// `curve` and `rail` are null or readable for 3 times their number of points, `p3` and `center_point` for 3 doubles; each output is
-/// null or writable for one value.
+/// `curve` and `rail` are null or readable for 3 times their number of points, `p3` and `center_point` for 3 doubles;
+/// each output is null or writable for one value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalMMoulding(
     curve: *const f64,

@@ -27,8 +27,8 @@ pub struct shapeop_canal_progress {
     pub value: f64,
 }
 
-/// Called after every iteration, on the thread that made the call. Returns 0 to go on; anything else ends the call, which succeeds
-/// with its best so far. It must return: no exception, no `longjmp`.
+/// Called after every iteration, on the thread that made the call. Returns 0 to go on; anything else ends the call,
+/// which succeeds with its best so far. It must return: no exception, no `longjmp`.
 pub type shapeop_canal_progress_callback =
     Option<unsafe extern "C" fn(progress: *const shapeop_canal_progress, user: *mut c_void) -> c_int>;
 
@@ -52,7 +52,8 @@ pub struct shapeop_canal_smooth_options {
     pub cone_axis_z: f64,
     /// The angle of the normal to the axis, in radians, 0 to pi. Default 0.
     pub cone_angle: f64,
-    /// The most that two spacings of points change against each other, 1 (they stay) or more; may be infinite. Default 4.
+    /// The most that two spacings of points change against each other, 1 (they stay) or more; may be infinite. Default
+    /// 4.
     pub spacing_ratio: f64,
     /// The most that a length changes, as a part of its first value, above 0; may be infinite. Default 0.25.
     pub length_change: f64,
@@ -175,21 +176,22 @@ pub unsafe extern "C" fn shapeop_canalDefaultSmoothOptions(options: *mut shapeop
     }))
 }
 
-/// Smooths a strip with a frame at its first point (`frame`: the unit tangents `t1`, near the guide's, and `t2`): lowers the sum of
-/// the squared curvatures of the arcs over all edges by moving the guide's points along their curve, the cubic spline through
-/// them, and by changing lengths and frame. The guide's ends and the direction of the first crossing edge stay.
+/// Smooths a strip with a frame at its first point (`frame`: the unit tangents `t1`, near the guide's, and `t2`):
+/// lowers the sum of the squared curvatures of the arcs over all edges by moving the guide's points along their curve,
+/// the cubic spline through them, and by changing lengths and frame. The guide's ends and the direction of the first
+/// crossing edge stay.
 ///
-/// `options` is null for the defaults. `progress` may be null. Outputs: the guide and the border, `nb_points` points each, where each
-/// guide point is on the curve (`parameters`, in lengths of chords along the given points) and the frame, 9 doubles; the last two may
-/// be null. `report` is null, or its `struct_size` is set. Of `history`, the functional at the start and after every iteration, as
-/// many entries are written as there are if there is room for `capacity`; `count` is their number. All three are null, 0 and
-/// null to leave it out.
+/// `options` is null for the defaults. `progress` may be null. Outputs: the guide and the border, `nb_points` points
+/// each, where each guide point is on the curve (`parameters`, in lengths of chords along the given points) and the
+/// frame, 9 doubles; the last two may be null. `report` is null, or its `struct_size` is set. Of `history`, the
+/// functional at the start and after every iteration, as many entries are written as there are if there is room for
+/// `capacity`; `count` is their number. All three are null, 0 and null to leave it out.
 ///
 /// # Safety
-/// `guide` and `border` are null or readable, `out_guide` and `out_border` null or writable, for `3 * nb_points` doubles; `frame` is
-/// readable for 6. `parameters` is null or writable for `nb_points` doubles, `out_frame` for 9, `history` for `capacity`, `count`
-/// for one int. `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many
-/// bytes. `progress` is null or a function of that signature.
+/// `guide` and `border` are null or readable, `out_guide` and `out_border` null or writable, for `3 * nb_points`
+/// doubles; `frame` is readable for 6. `parameters` is null or writable for `nb_points` doubles, `out_frame` for 9,
+/// `history` for `capacity`, `count` for one int. `options` and `report` are null, or their `struct_size` is set and
+/// they are readable or writable for so many bytes. `progress` is null or a function of that signature.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalSmooth(
     guide: *const f64,
@@ -265,7 +267,8 @@ pub unsafe extern "C" fn shapeop_canalSmooth(
 /// Writes what `shapeop_canalSmooth` minimises, for a strip with a frame at its first point.
 ///
 /// # Safety
-/// `guide` and `border` are null or readable for `3 * nb_points` doubles, `frame` for 6; `out` is null or writable for one.
+/// `guide` and `border` are null or readable for `3 * nb_points` doubles, `frame` for 6; `out` is null or writable for
+/// one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalStripEnergy(
     guide: *const f64,

@@ -59,16 +59,18 @@ unsafe fn tell(strip: Strip, told: &Told) -> Result<()> {
     outputs.write()
 }
 
-/// Writes the border of the strip of circular quads along `points` that begins at `start` and whose crossing edges have the given
-/// lengths, in model units, one for each point. Not every sequence of lengths is attainable: `flags` has bits
+/// Writes the border of the strip of circular quads along `points` that begins at `start` and whose crossing edges have
+/// the given lengths, in model units, one for each point. Not every sequence of lengths is attainable: `flags` has bits
 /// `SHAPEOP_STRIP_...`; without them a refusal says what is attainable, and the message has the quad.
 ///
-/// All outputs but `border` may be null: the lengths that were made, the largest attainable length at the end of each quad,
-/// whether each quad crosses itself, whether each length was replaced, and the largest difference of a length from that asked for.
+/// All outputs but `border` may be null: the lengths that were made, the largest attainable length at the end of each
+/// quad, whether each quad crosses itself, whether each length was replaced, and the largest difference of a length
+/// from that asked for.
 ///
 /// # Safety
-/// `points` is null or readable, `border` null or writable, for `3 * nb_points` doubles; `start` is readable for 3. `lengths`,
-/// `out_lengths` and `is_projected` have `nb_points` values, `attainable` and `is_flipped` one fewer, `deviation` one.
+/// `points` is null or readable, `border` null or writable, for `3 * nb_points` doubles; `start` is readable for 3.
+/// `lengths`, `out_lengths` and `is_projected` have `nb_points` values, `attainable` and `is_flipped` one fewer,
+/// `deviation` one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalStrip(
     points: *const f64,
@@ -93,8 +95,8 @@ pub unsafe extern "C" fn shapeop_canalStrip(
     }))
 }
 
-/// As `shapeop_canalStrip`, from the radius of each quad's circle, one fewer than points. `start` says in which direction the first
-/// crossing edge goes. With `flags` `SHAPEOP_STRIP_STRICT` quads that cross themselves are refused.
+/// As `shapeop_canalStrip`, from the radius of each quad's circle, one fewer than points. `start` says in which
+/// direction the first crossing edge goes. With `flags` `SHAPEOP_STRIP_STRICT` quads that cross themselves are refused.
 ///
 /// # Safety
 /// As `shapeop_canalStrip`; `radii` is null or readable for `nb_points - 1` doubles.
@@ -124,7 +126,8 @@ pub unsafe extern "C" fn shapeop_canalStripOfRadii(
     }))
 }
 
-/// As `shapeop_canalStrip`, from the lengths of the border's edges, one fewer than points. They are attainable from any angle.
+/// As `shapeop_canalStrip`, from the lengths of the border's edges, one fewer than points. They are attainable from any
+/// angle.
 ///
 /// # Safety
 /// As `shapeop_canalStrip`; `edges` is null or readable for `nb_points - 1` doubles.
@@ -172,8 +175,8 @@ pub unsafe extern "C" fn shapeop_canalLengthsBetween(
     }))
 }
 
-/// Writes the lengths of the edges of a border that is `length` long in all, one fewer than points, each in the proportion of the
-/// guide's edge.
+/// Writes the lengths of the edges of a border that is `length` long in all, one fewer than points, each in the
+/// proportion of the guide's edge.
 ///
 /// # Safety
 /// `points` is null or readable for `3 * nb_points` doubles, `out` is null or writable for `nb_points - 1`.
@@ -195,11 +198,12 @@ pub unsafe extern "C" fn shapeop_canalEdgesOfBorder(
     }))
 }
 
-/// Writes the circle of each quad of a strip: its center, the unit vector along its axis and its radius, 7 doubles; one fewer than
-/// points on either side.
+/// Writes the circle of each quad of a strip: its center, the unit vector along its axis and its radius, 7 doubles; one
+/// fewer than points on either side.
 ///
 /// # Safety
-/// `guide` and `border` are null or readable for `3 * nb_points` doubles, `out` is null or writable for `7 * (nb_points - 1)`.
+/// `guide` and `border` are null or readable for `3 * nb_points` doubles, `out` is null or writable for `7 * (nb_points
+/// - 1)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalStripCircles(
     guide: *const f64,
@@ -218,14 +222,14 @@ pub unsafe extern "C" fn shapeop_canalStripCircles(
     }))
 }
 
-/// Writes the strip whose quads have the given circles, two or more, of which consecutive ones meet in two points: `nb_circles + 1`
-/// points on either side. The first crossing edge goes through the point of the first circle nearest to `start`, the last one
-/// through that of the last circle nearest to `end`; either may be null. `distance`, which may be null, is the largest
-/// distance of a point from a circle that it should be on.
+/// Writes the strip whose quads have the given circles, two or more, of which consecutive ones meet in two points:
+/// `nb_circles + 1` points on either side. The first crossing edge goes through the point of the first circle nearest
+/// to `start`, the last one through that of the last circle nearest to `end`; either may be null. `distance`, which may
+/// be null, is the largest distance of a point from a circle that it should be on.
 ///
 /// # Safety
-/// `circles` is null or readable for `7 * nb_circles` doubles, `start` and `end` are null or readable for 3; `guide` and `border` are
-/// null or writable for `3 * (nb_circles + 1)`, `distance` for one.
+/// `circles` is null or readable for `7 * nb_circles` doubles, `start` and `end` are null or readable for 3; `guide`
+/// and `border` are null or writable for `3 * (nb_circles + 1)`, `distance` for one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalStripOfCircles(
     circles: *const f64,
@@ -252,13 +256,14 @@ pub unsafe extern "C" fn shapeop_canalStripOfCircles(
     }))
 }
 
-/// Tells how a frame comes back around a closed polygon, whose last point may repeat the first. Each output may be null: the
-/// product of the reflections, 9 doubles column by column; how far it is from what a smooth surface needs; whether that is round-off;
-/// for an odd number of edges the first tangent that the frame must have (zero for an even number, where it is free).
+/// Tells how a frame comes back around a closed polygon, whose last point may repeat the first. Each output may be
+/// null: the product of the reflections, 9 doubles column by column; how far it is from what a smooth surface needs;
+/// whether that is round-off; for an odd number of edges the first tangent that the frame must have (zero for an even
+/// number, where it is free).
 ///
 /// # Safety
-/// `points` is null or readable for `3 * nb_points` doubles; `matrix` is null or writable for 9 doubles, `tangent` for 3, `residual`
-/// and `closes` for one value.
+/// `points` is null or readable for `3 * nb_points` doubles; `matrix` is null or writable for 9 doubles, `tangent` for
+/// 3, `residual` and `closes` for one value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalHolonomy(
     points: *const f64,
@@ -282,8 +287,8 @@ pub unsafe extern "C" fn shapeop_canalHolonomy(
     }))
 }
 
-/// Writes the frame at the first point of a closed polygon with which the surface is smooth across the seam and that is nearest to
-/// `wish`, the unit tangents `t1` and `t2`; 9 doubles. Refused with `SO_NOT_CLOSED` where there is none.
+/// Writes the frame at the first point of a closed polygon with which the surface is smooth across the seam and that is
+/// nearest to `wish`, the unit tangents `t1` and `t2`; 9 doubles. Refused with `SO_NOT_CLOSED` where there is none.
 ///
 /// # Safety
 /// `points` is null or readable for `3 * nb_points` doubles, `wish` for 6; `out` is null or writable for 9.
@@ -306,13 +311,14 @@ pub unsafe extern "C" fn shapeop_canalClosedFrame(
     }))
 }
 
-/// Writes the closed polygon inscribed in a sphere about the origin whose edges are parallel to those of a closed polygon and nearest
-/// to them in length, if there is room for `capacity` points, and their number to `count`: 0 if there is none, as the polygon is not
-/// pseudo-spherical. `reversed_count`, which may be null, is the number of its edges that point the other way.
+/// Writes the closed polygon inscribed in a sphere about the origin whose edges are parallel to those of a closed
+/// polygon and nearest to them in length, if there is room for `capacity` points, and their number to `count`: 0 if
+/// there is none, as the polygon is not pseudo-spherical. `reversed_count`, which may be null, is the number of its
+/// edges that point the other way.
 ///
 /// # Safety
-/// `points` is null or readable for `3 * nb_points` doubles; `out` is null or writable for `3 * capacity` doubles, `count` and
-/// `reversed_count` for one int.
+/// `points` is null or readable for `3 * nb_points` doubles; `out` is null or writable for `3 * capacity` doubles,
+/// `count` and `reversed_count` for one int.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalParallelOnSphere(
     points: *const f64,
@@ -335,14 +341,14 @@ pub unsafe extern "C" fn shapeop_canalParallelOnSphere(
     }))
 }
 
-/// Writes the circle that closes a strip: `first_circle` goes through `start` and the guide's first point `guide_first`,
-/// `last_circle` through the guide's last point `guide_last`. `first` is where `start` must be, `last` the point opposite to
-/// `guide_last`. Other outputs may be null: `which_case` is 1 if both circles are on one sphere, so that `start` stays, or 2;
-/// `is_crossed` whether the closing quad crosses itself.
+/// Writes the circle that closes a strip: `first_circle` goes through `start` and the guide's first point
+/// `guide_first`, `last_circle` through the guide's last point `guide_last`. `first` is where `start` must be, `last`
+/// the point opposite to `guide_last`. Other outputs may be null: `which_case` is 1 if both circles are on one sphere,
+/// so that `start` stays, or 2; `is_crossed` whether the closing quad crosses itself.
 ///
 /// # Safety
-/// Circles are null or readable for 7 doubles, points for 3; `circle` is null or writable for 7, `first` and `last` for 3, the others
-/// for one int.
+/// Circles are null or readable for 7 doubles, points for 3; `circle` is null or writable for 7, `first` and `last` for
+/// 3, the others for one int.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalCloseCircles(
     first_circle: *const f64,
@@ -374,13 +380,14 @@ pub unsafe extern "C" fn shapeop_canalCloseCircles(
     }))
 }
 
-/// Closes a strip of `nb_points` points on either side with the guide's last point `last`: writes the border of `nb_points + 1` points,
-/// of which the first moves where it must. `circle` (of the closing quad), `which_case` and `is_flipped` (one for each quad, the
-/// closing one last) may be null.
+/// Closes a strip of `nb_points` points on either side with the guide's last point `last`: writes the border of
+/// `nb_points + 1` points, of which the first moves where it must. `circle` (of the closing quad), `which_case` and
+/// `is_flipped` (one for each quad, the closing one last) may be null.
 ///
 /// # Safety
-/// `guide` and `border` are null or readable for `3 * nb_points` doubles, `last` for 3; `out_border` is null or writable for
-/// `3 * (nb_points + 1)` doubles, `circle` for 7, `is_flipped` for `nb_points + 1` ints, `which_case` for one.
+/// `guide` and `border` are null or readable for `3 * nb_points` doubles, `last` for 3; `out_border` is null or
+/// writable for `3 * (nb_points + 1)` doubles, `circle` for 7, `is_flipped` for `nb_points + 1` ints, `which_case` for
+/// one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalCloseStrip(
     guide: *const f64,

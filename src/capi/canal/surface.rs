@@ -66,9 +66,9 @@ pub(super) fn kind_number(kind: BaseKind) -> c_int {
 }
 
 /// Creates a surface of a circular net: `rows` times `columns` points, row by row; `wraps` says which directions close.
-/// `frame` is that at point (0, 0): the unit tangents `t1`, from row to row, and `t2`, from column to column, orthogonal;
-/// the normal is their cross product. `kind` is a `shapeop_canal_kind`. Null if it is refused, as a net is whose quads
-/// have no circles. Delete it with `shapeop_canalDelete`.
+/// `frame` is that at point (0, 0): the unit tangents `t1`, from row to row, and `t2`, from column to column,
+/// orthogonal; the normal is their cross product. `kind` is a `shapeop_canal_kind`. Null if it is refused, as a net is
+/// whose quads have no circles. Delete it with `shapeop_canalDelete`.
 ///
 /// # Safety
 /// `points` is null or readable for `3 * rows * columns` doubles, `frame` for 6.
@@ -117,8 +117,8 @@ pub extern "C" fn shapeop_canalDelete(surface: *mut ShapeOpCanal) {
     }
 }
 
-/// The JSON form of a surface, its base and its chain of transformations; null if it is refused. The text is the calling
-/// thread's own, valid until that thread's next call of a `shapeop_canal...` function that answers with a text.
+/// The JSON form of a surface, its base and its chain of transformations; null if it is refused. The text is the
+/// calling thread's own, valid until that thread's next call of a `shapeop_canal...` function that answers with a text.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_canalText(surface: *mut ShapeOpCanal) -> *const c_char {
     guard(surface, |surface| Ok(messages::show_canal(surface.to_json()))).unwrap_or(std::ptr::null())
@@ -143,7 +143,8 @@ pub extern "C" fn shapeop_canalChainCount(surface: *mut ShapeOpCanal) -> c_int {
     number(guard(surface, |surface| c_count(surface.chain().len())))
 }
 
-/// Writes the size of a surface's net: `rows`, `columns` and `wraps`, bits as in `shapeop_canalCreate`. Each may be null.
+/// Writes the size of a surface's net: `rows`, `columns` and `wraps`, bits as in `shapeop_canalCreate`. Each may be
+/// null.
 ///
 /// # Safety
 /// Each is null or writable for one int.
@@ -186,8 +187,8 @@ unsafe fn tell_frames(net: &Net, frames: *mut f64, capacity: c_int, count: *mut 
     outputs.write()
 }
 
-/// Writes the points of a surface's net, row by row, if there is room for `capacity` points, and their number to `count`.
-/// With null and 0 it only tells the number.
+/// Writes the points of a surface's net, row by row, if there is room for `capacity` points, and their number to
+/// `count`. With null and 0 it only tells the number.
 ///
 /// # Safety
 /// `points` is null or writable for `3 * capacity` doubles, `count` for one int.
@@ -252,8 +253,8 @@ fn push(surface: *mut ShapeOpCanal, transform: impl FnOnce() -> Result<Transform
     code(guard(surface, |surface| surface.push(transform()?)))
 }
 
-/// Inverts a surface: a point at the vector `q` from `center` goes to `ratio * q / |q|^2`; `ratio` is in squared model units
-/// and not 0. The surface becomes M of what it was.
+/// Inverts a surface: a point at the vector `q` from `center` goes to `ratio * q / |q|^2`; `ratio` is in squared model
+/// units and not 0. The surface becomes M of what it was.
 ///
 /// # Safety
 /// `center` is null or readable for 3 doubles.
@@ -285,7 +286,8 @@ pub extern "C" fn shapeop_canalScale(surface: *mut ShapeOpCanal, factor: f64) ->
     push(surface, || Ok(Transform::Scaling(factor)))
 }
 
-/// Turns a surface about the axis through the origin along `axis`, of any length but 0, by `angle` radians, right-handed.
+/// Turns a surface about the axis through the origin along `axis`, of any length but 0, by `angle` radians,
+/// right-handed.
 ///
 /// # Safety
 /// `axis` is null or readable for 3 doubles.
@@ -306,9 +308,9 @@ pub unsafe extern "C" fn shapeop_canalRotate(surface: *mut ShapeOpCanal, axis: *
     })
 }
 
-/// The Combescure transformation of a surface: the parallel net whose edges along column 0 (from row to row) and along row 0
-/// are these multiples, none 0, of what they were. One factor for each edge. Lengths of a direction that wraps must close it
-/// (`shapeop_canalCloseLengths`).
+/// The Combescure transformation of a surface: the parallel net whose edges along column 0 (from row to row) and along
+/// row 0 are these multiples, none 0, of what they were. One factor for each edge. Lengths of a direction that wraps
+/// must close it (`shapeop_canalCloseLengths`).
 ///
 /// # Safety
 /// Each array is null or readable for its number of doubles.
@@ -335,8 +337,8 @@ pub extern "C" fn shapeop_canalUndo(surface: *mut ShapeOpCanal) -> c_int {
     number(guard(surface, |surface| Ok(c_int::from(surface.pop()?.is_some()))))
 }
 
-/// Creates the surface that `surface` is when every face is cut into `one` by `two` pieces along lines of curvature, without a
-/// chain: the base is refined and transformed, so that old points stay. Null if it is refused.
+/// Creates the surface that `surface` is when every face is cut into `one` by `two` pieces along lines of curvature,
+/// without a chain: the base is refined and transformed, so that old points stay. Null if it is refused.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_canalRefined(surface: *mut ShapeOpCanal, one: c_int, two: c_int) -> *mut ShapeOpCanal {
     let refined = guard(surface, |surface| {
@@ -352,8 +354,8 @@ pub extern "C" fn shapeop_canalRefined(surface: *mut ShapeOpCanal, one: c_int, t
     }
 }
 
-/// As `shapeop_canalRefined`, with every face cut at the given fractions of the arcs of column 0 (`one`) and row 0 (`two`),
-/// ascending between 0 and 1; the net itself is cut, not its base.
+/// As `shapeop_canalRefined`, with every face cut at the given fractions of the arcs of column 0 (`one`) and row 0
+/// (`two`), ascending between 0 and 1; the net itself is cut, not its base.
 ///
 /// # Safety
 /// Each array is null or readable for its number of doubles.
@@ -381,8 +383,8 @@ pub unsafe extern "C" fn shapeop_canalRefinedAt(
     }
 }
 
-/// Writes the point and the frame (9 doubles; each output may be null) of the patch over face `(i, j)` at the fractions `u` and
-/// `v`, 0 to 1, of its arcs from row to row and from column to column.
+/// Writes the point and the frame (9 doubles; each output may be null) of the patch over face `(i, j)` at the fractions
+/// `u` and `v`, 0 to 1, of its arcs from row to row and from column to column.
 ///
 /// # Safety
 /// `point` is null or writable for 3 doubles, `frame` for 9.
@@ -419,8 +421,8 @@ pub unsafe extern "C" fn shapeop_canalEvaluate(
     }))
 }
 
-/// Writes how far the frames come back from themselves across the seams of a surface that wraps, as a difference of unit
-/// vectors: 0 where the surface is smooth there, or does not wrap.
+/// Writes how far the frames come back from themselves across the seams of a surface that wraps, as a difference of
+/// unit vectors: 0 where the surface is smooth there, or does not wrap.
 ///
 /// # Safety
 /// `gap` is null or writable for one double.
@@ -435,8 +437,8 @@ pub unsafe extern "C" fn shapeop_canalClosingGap(surface: *mut ShapeOpCanal, gap
     }))
 }
 
-/// Writes how near any forces along the lines of curvature come to equilibrium under a pressure along the normals: 0, the lines
-/// can be lines of principal stress; 1, no force carries anything.
+/// Writes how near any forces along the lines of curvature come to equilibrium under a pressure along the normals: 0,
+/// the lines can be lines of principal stress; 1, no force carries anything.
 ///
 /// # Safety
 /// `residual` is null or writable for one double.
@@ -450,8 +452,8 @@ pub unsafe extern "C" fn shapeop_canalMembraneResidual(surface: *mut ShapeOpCana
     }))
 }
 
-/// As `shapeop_canalMembraneResidual`, for given forces per length in both directions, one per face, above 0 for tension under
-/// `pressure` along the normal, which is not 0.
+/// As `shapeop_canalMembraneResidual`, for given forces per length in both directions, one per face, above 0 for
+/// tension under `pressure` along the normal, which is not 0.
 ///
 /// # Safety
 /// The forces are null or readable for `nb_faces` doubles, `residual` is null or writable for one.
