@@ -113,6 +113,19 @@ A flat face can be cut from a sheet; diagonals within 1 % of an edge let a pane 
     #[command(mut_arg("closeness", |arg| arg.help("Weight that draws every point to where it was, above 0")))]
     #[command(mut_arg("fairness", |arg| arg.help("Weight of fair moves at every point; 0: ten times the closeness")))]
     Rationalize(RationalizeArgs),
+    /// Give every face a circumscribed circle to the last digits, near the design and with fair moves
+    #[command(after_help = "\
+Examples:
+  shapeop circumscribe out/edge_a.fit.obj --anchors boundary      a circular mesh stays what it is
+  shapeop circumscribe roof.obj --closeness 0.05 --fairness 5     smoother moves, farther from the design
+
+Builds: a hard Circle for each face of more than 3 corners. Of all meshes that meet this, the one is found that is nearest to \
+the design and whose moves are fair. Anchors are handles. It is where exploring goes on from a circular mesh, such as \
+those that `shapeop canal` makes.")]
+    #[command(mut_arg("weight", |arg| arg.help("Priority of faces, where not all can have a circle")))]
+    #[command(mut_arg("closeness", |arg| arg.help("Weight that draws every point to where it was, above 0")))]
+    #[command(mut_arg("fairness", |arg| arg.help("Weight of fair moves at every point; 0: ten times the closeness")))]
+    Circumscribe(RecipeArgs),
     /// Replay a drag: handles move frame by frame, hard constraints stay met; write every frame
     #[command(after_help = "\
 Examples:

@@ -59,6 +59,7 @@ fn main() -> ExitCode {
             let recipe = commands::recipe::Recipe::Rationalize { diagonals: args.diagonals };
             commands::recipe::run(recipe, &args.recipe, is_quiet)
         }
+        Command::Circumscribe(args) => commands::recipe::run(commands::recipe::Recipe::Circumscribe, &args, is_quiet),
         Command::Explore(args) => commands::explore::run(&args, is_quiet),
         Command::Check(args) => commands::check::run(&args, is_quiet),
         Command::Canal(args) => commands::canal::run(&args.command, is_quiet),

@@ -106,6 +106,18 @@ fn every_command_writes_a_circular_mesh_its_surface_a_picture_and_a_true_report(
 }
 
 #[test]
+fn a_canal_mesh_is_gone_on_with_by_the_engine() {
+    let folder = Folder::new("canal-circumscribe");
+    said(&shapeop_into(&folder, &["canal", "fit", &curve("edge_a.csv"), &curve("edge_b.csv"), "--phi", "30"]));
+    let made = folder.path("edge_a.fit.obj").display().to_string();
+    said(&shapeop_into(&folder, &["circumscribe", &made, "--anchors", "boundary"]));
+    let (before, after) = (mesh_of(&folder, "edge_a.fit"), mesh_of(&folder, "edge_a.fit.circumscribe"));
+    assert_circular(&after);
+    let moved = measure::displacements(&before.points, &after.points).unwrap().into_iter().fold(0.0, f64::max);
+    assert!(moved < 1e-8 * before.diagonal(), "{moved:e}");
+}
+
+#[test]
 fn strips_have_the_lengths_and_circles_asked_for() {
     let folder = Folder::new("canal-strip");
     let strip = |more: &[&str]| {

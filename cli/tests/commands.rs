@@ -255,7 +255,7 @@ fn types_are_those_of_the_registry() {
 
 #[test]
 fn help_teaches_with_examples() {
-    let recipes = ["planarize", "circularize", "smooth", "regularize", "equalize", "rationalize"];
+    let recipes = ["planarize", "circularize", "smooth", "regularize", "equalize", "rationalize", "circumscribe"];
     for command in [&recipes[..], &["solve", "explore", "check", "types"]].concat() {
         let text = said(&shapeop(&[command, "--help"]));
         assert!(text.contains(&format!("shapeop {command} ")) && text.contains("Examples:"), "{command}");

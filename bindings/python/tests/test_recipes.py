@@ -33,7 +33,7 @@ def test_the_names_are_the_library_s_and_each_is_a_function() -> None:
         recipe = getattr(shapeop, name)
         assert isinstance(recipe, shapeop.Recipe)
         assert name in dir(shapeop)
-        result = recipe(points, faces, max_iterations=50)
+        result = recipe(points, faces, max_iterations=500)
         hard = [i for i, one in enumerate(shapeop.recipe(name, points, faces).constraints) if one.hard]
         if hard:
             # They are met within the recipe's tolerance, 1e-9 of the model's size, which costs energy.
@@ -41,7 +41,7 @@ def test_the_names_are_the_library_s_and_each_is_a_function() -> None:
         else:
             assert result.report.energy_after < result.report.energy_before
         with shapeop.recipe(name, points, faces).solver() as solver:
-            solver.solve_until(50)
+            solver.solve_until(500)
             assert_near(solver.points, result.points, 0)
     with pytest.raises(AttributeError, match="no attribute 'planarise_all'"):
         shapeop.planarise_all  # noqa: B018

@@ -34,6 +34,7 @@ pub enum Recipe {
     Rationalize {
         diagonals: Option<f64>,
     },
+    Circumscribe,
 }
 
 impl Recipe {
@@ -45,6 +46,7 @@ impl Recipe {
             Self::Regularize => "regularize",
             Self::Equalize { .. } => "equalize",
             Self::Rationalize { .. } => "rationalize",
+            Self::Circumscribe => "circumscribe",
         }
     }
 
@@ -56,6 +58,7 @@ impl Recipe {
             Self::Regularize => recipes::regularize(mesh, options),
             Self::Equalize { length } => recipes::equalize(mesh, length, options),
             Self::Rationalize { diagonals } => recipes::rationalize(mesh, diagonal_distance(mesh, diagonals)?, options),
+            Self::Circumscribe => recipes::circumscribe(mesh, options),
         }
     }
 
@@ -63,7 +66,7 @@ impl Recipe {
     fn colour(self) -> Colour {
         match self {
             Self::Planarize | Self::Rationalize { .. } => Colour::Planarity,
-            Self::Circularize => Colour::Circularity,
+            Self::Circularize | Self::Circumscribe => Colour::Circularity,
             Self::Smooth => Colour::Displacement,
             Self::Regularize => Colour::Regularity,
             Self::Equalize { .. } => Colour::Lengths,
