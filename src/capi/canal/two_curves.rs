@@ -52,21 +52,25 @@ pub enum shapeop_canal_section {
 pub struct shapeop_canal_fit_options {
     /// In: `sizeof(shapeop_canal_fit_options)`.
     pub struct_size: c_uint,
-    /// How many circles, one through each of as many points of the first curve; at least 2, 3 on a closed curve. Default 16.
+    /// How many circles, one through each of as many points of the first curve; at least 2, 3 on a closed curve.
+    /// Default 16.
     pub circle_count: c_int,
     /// How many points of each circle; at least 2, 3 of whole circles. Default 12.
     pub column_count: c_int,
-    /// A `shapeop_canal_spacing`. Default 0; with `SO_CANAL_SPACING_POINTS` the number of circles is that of the points.
+    /// A `shapeop_canal_spacing`. Default 0; with `SO_CANAL_SPACING_POINTS` the number of circles is that of the
+    /// points.
     pub spacing: c_int,
     /// A `shapeop_canal_section`. Default 0.
     pub section: c_int,
     /// For `SO_CANAL_SECTION_TO_CURVE`, 1: around the far side of the circle. Default 0.
     pub is_long_way: c_int,
-    /// 1: the first normal is as near as possible to `normal_x`, `normal_y`, `normal_z`; 0, the default: it is at the angle `angle`.
+    /// 1: the first normal is as near as possible to `normal_x`, `normal_y`, `normal_z`; 0, the default: it is at the
+    /// angle `angle`.
     pub has_normal: c_int,
     /// 0; a gap that keeps the doubles aligned.
     pub reserved: c_int,
-    /// The angle, in radians, about the first tangent from the direction of z orthogonal to it (of x where it is along z). Default 0.
+    /// The angle, in radians, about the first tangent from the direction of z orthogonal to it (of x where it is along
+    /// z). Default 0.
     pub angle: f64,
     /// The first normal, x.
     pub normal_x: f64,
@@ -177,11 +181,10 @@ pub unsafe extern "C" fn shapeop_canalDefaultFitOptions(options: *mut shapeop_ca
 /// `options` is null, or its `struct_size` is set and it is readable for so many bytes.
 unsafe fn read_options(options: *const shapeop_canal_fit_options) -> Result<shapeop_canal_fit_options> {
     if options.is_null() {
-        Ok(default_options())
-    } else {
-        // SAFETY: the caller vouches for it; numbers are valid for any bytes.
-        unsafe { structs::read("options", options, default_options()) }
+        return Ok(default_options());
     }
+    // SAFETY: the caller vouches for it; numbers are valid for any bytes.
+    unsafe { structs::read("options", options, default_options()) }
 }
 
 fn section(options: &shapeop_canal_fit_options) -> Result<Section> {
@@ -221,9 +224,9 @@ fn guide_of(curve: &Spline) -> Result<Guide> {
     Guide::new(&points, &tangents, curve.is_closed())
 }
 
-/// Writes points spread over the cubic spline through given ones, and its unit tangents there, which may be null. `spacing` is a
-/// `shapeop_canal_spacing`; for `SO_CANAL_SPACING_POINTS` `nb` is that of the points themselves (without a last one that
-/// repeats the first of a closed curve). A closed curve's first point is not repeated.
+/// Writes points spread over the cubic spline through given ones, and its unit tangents there, which may be null.
+/// `spacing` is a `shapeop_canal_spacing`; for `SO_CANAL_SPACING_POINTS` `nb` is that of the points themselves (without
+/// a last one that repeats the first of a closed curve). A closed curve's first point is not repeated.
 ///
 /// # Safety
 /// `points` is null or readable for `3 * nb_points` doubles; `out` and `tangents` are null or writable for `3 * nb`.
@@ -262,14 +265,15 @@ pub unsafe extern "C" fn shapeop_canalCurvePoints(
     }))
 }
 
-/// Writes normals along a curve through given points, the first one at an angle (see `shapeop_canal_fit_options.angle`), or as near as
-/// possible to `first` if that is not null. `tangents`, of any length, are those of the curve; null: of the spline through the
-/// points. `normals` turn as little as the curve allows; `frames` (9 doubles each) are mirrored from point to point, as those of
-/// a cyclidic net along its guide. Each of the two may be null. The last point of a closed curve must not repeat the first.
+/// Writes normals along a curve through given points, the first one at an angle (see
+/// `shapeop_canal_fit_options.angle`), or as near as possible to `first` if that is not null. `tangents`, of any
+/// length, are those of the curve; null: of the spline through the points. `normals` turn as little as the curve
+/// allows; `frames` (9 doubles each) are mirrored from point to point, as those of a cyclidic net along its guide. Each
+/// of the two may be null. The last point of a closed curve must not repeat the first.
 ///
 /// # Safety
-/// `points` and `tangents` are null or readable, `normals` is null or writable, for `3 * nb_points` doubles; `first` is null or readable
-/// for 3; `frames` is null or writable for `9 * nb_points`.
+/// `points` and `tangents` are null or readable, `normals` is null or writable, for `3 * nb_points` doubles; `first` is
+/// null or readable for 3; `frames` is null or writable for `9 * nb_points`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalNormals(
     points: *const f64,
@@ -331,14 +335,15 @@ fn sphere_flags(found: &TouchingSpheres) -> Vec<c_int> {
     (0..found.touching.len()).map(of).collect()
 }
 
-/// Writes the spheres that touch a curve in given points, with their centers along `normals` (of any length), and a second curve, the
-/// spline through `curve`: the center and the radius, 4 doubles each. Each other output may be null: how far each center is along its
-/// normal, where each sphere touches the second curve, bits `SHAPEOP_SPHERE_...` for each, and the sum of the squared differences of
-/// radius and distance.
+/// Writes the spheres that touch a curve in given points, with their centers along `normals` (of any length), and a
+/// second curve, the spline through `curve`: the center and the radius, 4 doubles each. Each other output may be null:
+/// how far each center is along its normal, where each sphere touches the second curve, bits `SHAPEOP_SPHERE_...` for
+/// each, and the sum of the squared differences of radius and distance.
 ///
 /// # Safety
-/// `points` and `normals` are null or readable for `3 * nb_points` doubles, `curve` for `3 * nb_curve`; for each point `spheres` is null
-/// or writable for 4 doubles, `offsets` for one, `feet` for 3, `flags` for one int; `residual` for one double.
+/// `points` and `normals` are null or readable for `3 * nb_points` doubles, `curve` for `3 * nb_curve`; for each point
+/// `spheres` is null or writable for 4 doubles, `offsets` for one, `feet` for 3, `flags` for one int; `residual` for
+/// one double.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalTouchingSpheres(
     points: *const f64,
@@ -373,7 +378,8 @@ pub unsafe extern "C" fn shapeop_canalTouchingSpheres(
     }))
 }
 
-/// Writes the circles in which each sphere (its center and its radius, 4 doubles) meets the next: one fewer than spheres.
+/// Writes the circles in which each sphere (its center and its radius, 4 doubles) meets the next: one fewer than
+/// spheres.
 ///
 /// # Safety
 /// `spheres` is null or readable for `4 * nb_spheres` doubles, `out` is null or writable for `7 * (nb_spheres - 1)`.
@@ -399,17 +405,19 @@ pub unsafe extern "C" fn shapeop_canalCharacteristicCircles(
     }))
 }
 
-/// Creates the canal surface through the points of a first curve that touches a second one: the splines through `guide` and `curve`. Row
-/// `i` is on circle `i`, from its point of the first curve on unless the section starts elsewhere. Rows do not wrap; columns do around
-/// whole circles. `options` is null for the defaults. Null if it is refused.
+/// Creates the canal surface through the points of a first curve that touches a second one: the splines through `guide`
+/// and `curve`. Row `i` is on circle `i`, from its point of the first curve on unless the section starts elsewhere.
+/// Rows do not wrap; columns do around whole circles. `options` is null for the defaults. Null if it is refused.
 ///
-/// The outputs may be null (a count with them): the circles, 7 doubles each, and the spheres between them, 4 doubles each, with bits
-/// `SHAPEOP_SPHERE_...`, are written if there is room for so many. `report` is null, or its `struct_size` is set.
+/// The outputs may be null (a count with them): the circles, 7 doubles each, and the spheres between them, 4 doubles
+/// each, with bits `SHAPEOP_SPHERE_...`, are written if there is room for so many. `report` is null, or its
+/// `struct_size` is set.
 ///
 /// # Safety
-/// `guide` and `curve` are null or readable for 3 times their number of points; `circles` is null or writable for
-/// `7 * circle_capacity` doubles, `spheres` for `4 * sphere_capacity`, `sphere_flags` for `sphere_capacity` ints, the counts for one.
-/// `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many bytes.
+/// `guide` and `curve` are null or readable for 3 times their number of points; `circles` is null or writable for `7 *
+/// circle_capacity` doubles, `spheres` for `4 * sphere_capacity`, `sphere_flags` for `sphere_capacity` ints, the counts
+/// for one. `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so
+/// many bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalFit(
     guide: *const f64,
@@ -484,12 +492,13 @@ pub unsafe extern "C" fn shapeop_canalFit(
     })
 }
 
-/// Writes points of a section of a circle at equal angles, from its point `start` on: as many as `options->column_count` says. `target` is
-/// where the second curve passes, for `SO_CANAL_SECTION_TO_CURVE`; else null. Of `options` those on the section count.
+/// Writes points of a section of a circle at equal angles, from its point `start` on: as many as
+/// `options->column_count` says. `target` is where the second curve passes, for `SO_CANAL_SECTION_TO_CURVE`; else null.
+/// Of `options` those on the section count.
 ///
 /// # Safety
-/// `circle` is null or readable for 7 doubles, `start` and `target` for 3; `options` is null, or its `struct_size` is set and it is
-/// readable for so many bytes; `out` is null or writable for 3 times the number of points.
+/// `circle` is null or readable for 7 doubles, `start` and `target` for 3; `options` is null, or its `struct_size` is
+/// set and it is readable for so many bytes; `out` is null or writable for 3 times the number of points.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalSectionPoints(
     circle: *const f64,
@@ -516,12 +525,13 @@ pub unsafe extern "C" fn shapeop_canalSectionPoints(
     }))
 }
 
-/// Writes the grid of which row `i` is on circle `i` and row 0 is given; `guide` has a point of each circle, along which the rows lead
-/// from circle to circle. Consecutive circles are on one sphere. If `wraps` is 1 the rows close around the circles.
+/// Writes the grid of which row `i` is on circle `i` and row 0 is given; `guide` has a point of each circle, along
+/// which the rows lead from circle to circle. Consecutive circles are on one sphere. If `wraps` is 1 the rows close
+/// around the circles.
 ///
 /// # Safety
-/// `circles` is null or readable for `7 * nb_circles` doubles, `guide` for `3 * nb_circles`, `row` for `3 * nb_row`; `out` is null or
-/// writable for `3 * nb_circles * nb_row`.
+/// `circles` is null or readable for `7 * nb_circles` doubles, `guide` for `3 * nb_circles`, `row` for `3 * nb_row`;
+/// `out` is null or writable for `3 * nb_circles * nb_row`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalMeshCircles(
     circles: *const f64,
@@ -547,13 +557,13 @@ pub unsafe extern "C" fn shapeop_canalMeshCircles(
     }))
 }
 
-/// Writes a point of each circle from `start`, a point of the first, on. With `guide`, a point of each circle, they make circular quads
-/// with it; with null they are a column along which a mesh closes around whole circles: the circles' tangents there are mirror
-/// images of each other.
+/// Writes a point of each circle from `start`, a point of the first, on. With `guide`, a point of each circle, they
+/// make circular quads with it; with null they are a column along which a mesh closes around whole circles: the
+/// circles' tangents there are mirror images of each other.
 ///
 /// # Safety
-/// `circles` is null or readable for `7 * nb_circles` doubles, `start` for 3; `guide` is null or readable, `out` null or writable,
-/// for `3 * nb_circles`.
+/// `circles` is null or readable for `7 * nb_circles` doubles, `start` for 3; `guide` is null or readable, `out` null
+/// or writable, for `3 * nb_circles`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalColumn(
     circles: *const f64,
