@@ -814,7 +814,7 @@ typedef struct shapeop_recipe_options {
      */
     double closeness;
     /**
-     * The weight of fairness; 0, the default, for none ("rationalize", "circumscribe": for ten times the closeness).
+     * The weight of fairness; 0, the default, for none ("rationalize": for ten times the closeness).
      */
     double fairness;
     /**
@@ -1745,7 +1745,7 @@ SHAPEOP_API enum shapeop_err shapeop_defaultRecipeOptions(struct shapeop_recipe_
 
 /**
  * The problem that a recipe makes of a mesh, as JSON for `shapeop_setProblem`: "planarize", "circularize", "smooth",
- * "regularize", "equalize", "rationalize" or "circumscribe" (`shapeop_recipeName`); null if it is refused. Its points are those of the mesh
+ * "regularize", "equalize" or "rationalize" (`shapeop_recipeName`); null if it is refused. Its points are those of the mesh
  * in their order. The text is the calling thread's own, valid until that thread's next call of this function or of
  * `shapeop_problemText`.
  *

@@ -79,7 +79,7 @@ pub struct shapeop_recipe_options {
     pub weight: f64,
     /// The weight that draws each point to where it was; 0 for none. Default 0.05.
     pub closeness: f64,
-    /// The weight of fairness; 0, the default, for none ("rationalize", "circumscribe": for ten times the closeness).
+    /// The weight of fairness; 0, the default, for none ("rationalize": for ten times the closeness).
     pub fairness: f64,
     /// In model units: the length that "equalize" draws edges to; 0, the default: their mean. The distance that "rationalize"
     /// allows the diagonals of a quad; 0: planar quads. Other recipes refuse it.
@@ -132,7 +132,7 @@ pub unsafe extern "C" fn shapeop_defaultRecipeOptions(options: *mut shapeop_reci
 }
 
 /// The problem that a recipe makes of a mesh, as JSON for `shapeop_setProblem`: "planarize", "circularize", "smooth",
-/// "regularize", "equalize", "rationalize" or "circumscribe" (`shapeop_recipeName`); null if it is refused. Its points are those of the mesh
+/// "regularize", "equalize" or "rationalize" (`shapeop_recipeName`); null if it is refused. Its points are those of the mesh
 /// in their order. The text is the calling thread's own, valid until that thread's next call of this function or of
 /// `shapeop_problemText`.
 ///

@@ -96,14 +96,13 @@ impl Default for RecipeOptions {
 pub type Recipe = fn(&Mesh, Option<f64>, &RecipeOptions) -> Result<Problem>;
 
 /// Every recipe with its name, for programs that let people choose.
-pub const RECIPES: [(&str, Recipe); 7] = [
+pub const RECIPES: [(&str, Recipe); 6] = [
     ("planarize", |mesh, _, options| planarize(mesh, options)),
     ("circularize", |mesh, _, options| circularize(mesh, options)),
     ("smooth", |mesh, _, options| smooth(mesh, options)),
     ("regularize", |mesh, _, options| regularize(mesh, options)),
     ("equalize", equalize),
     ("rationalize", rationalize),
-    ("circumscribe", |mesh, _, options| circumscribe(mesh, options)),
 ];
 
 /// The recipes that take a length.
