@@ -121,7 +121,7 @@ Examples:
 
 Builds: a hard Circle for each face of more than 3 corners. Of all meshes that meet this, the one is found that is nearest to \
 the design and whose moves are fair. Anchors are handles. It is where exploring goes on from a circular mesh, such as \
-those that `shapeop canal` makes.")]
+those that `shapeop canal` makes. Far from any circular mesh it takes many iterations; the report says what is left.")]
     #[command(mut_arg("weight", |arg| arg.help("Priority of faces, where not all can have a circle")))]
     #[command(mut_arg("closeness", |arg| arg.help("Weight that draws every point to where it was, above 0")))]
     #[command(mut_arg("fairness", |arg| arg.help("Weight of fair moves at every point; 0: ten times the closeness")))]
