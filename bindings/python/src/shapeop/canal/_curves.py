@@ -1,0 +1,209 @@
+"""Surfaces from curves, and the steps between."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Any, NamedTuple, Optional, Union
+
+from .. import _abi, _arrays
+from .._library import ArgumentError, check, lib, text
+from ._arguments import _circles, _doubles, _ints, _of_length, _optional, _truths, _Watch
+from ._kinds import Center, Kind, ProgressFunction, Section, Spacing, Step
+from ._strips import _set
+from ._surface import CanalSurface
+
+
+class Fit(NamedTuple):
+    """A canal surface that fits two curves."""
+
+    surface: CanalSurface
+    circles: Any
+    spheres: Any
+    deviation: float
+    residual: float
+    tangent_gap: float
+    closing_gap: float
+    is_outward: bool
+
+
+class CCanal(NamedTuple):
+    """A C-canal surface and how well it meets what was asked for; one entry for each row."""
+
+    surface: CanalSurface
+    lengths: Any
+    deviations: Any
+    is_projected: list[bool]
+    is_cancelled: bool
+
+
+def fit(guide: Any, curve: Any, *, guide_closed: bool = False, curve_closed: bool = False, **options: Any) -> Fit:
+    """The canal surface through the spline of ``guide`` that touches the spline of ``curve``.
+
+    ``options``: the fields of ``shapeop_canal_fit_options`` in the C header, such as ``circle_count`` and ``angle``;
+    ``section`` and ``spacing`` also by name.
+    """
+    a, b = _arrays.points(guide, "guide"), _arrays.points(curve, "curve")
+    asked = _abi.shapeop_canal_fit_options(struct_size=ctypes.sizeof(_abi.shapeop_canal_fit_options))
+    check(lib.shapeop_canalDefaultFitOptions(ctypes.byref(asked)))
+    for name, kind in (("section", Section), ("spacing", Spacing)):
+        if name in options:
+            options[name] = _arrays.member(kind, options[name], name)
+    _set(asked, options)
+    told = _abi.shapeop_canal_fit_report(struct_size=ctypes.sizeof(_abi.shapeop_canal_fit_report))
+    capacity = max(asked.circle_count, a.length) + 1
+    circles, spheres, circle_count, sphere_count = (
+        _doubles(7 * capacity),
+        _doubles(4 * capacity),
+        ctypes.c_int(),
+        ctypes.c_int(),
+    )
+    handle = lib.shapeop_canalFit(
+        *a,
+        int(_arrays.truth(guide_closed, "guide_closed")),
+        *b,
+        int(_arrays.truth(curve_closed, "curve_closed")),
+        ctypes.byref(asked),
+        circles,
+        capacity,
+        ctypes.byref(circle_count),
+        spheres,
+        None,
+        capacity,
+        ctypes.byref(sphere_count),
+        ctypes.byref(told),
+    )
+    surface = CanalSurface._of(handle)
+    n, m = circle_count.value, sphere_count.value
+    return Fit(
+        surface,
+        _arrays.shaped((ctypes.c_double * (7 * n))(*circles[: 7 * n]), n, 7),
+        _arrays.shaped((ctypes.c_double * (4 * m))(*spheres[: 4 * m]), m, 4),
+        told.deviation,
+        told.residual,
+        told.tangent_gap,
+        told.closing_gap,
+        bool(told.is_outward),
+    )
+
+
+def c_canal(
+    guide: Any,
+    section: Any,
+    lengths: Optional[Any] = None,
+    curve: Optional[Any] = None,
+    *,
+    curve_closed: bool = False,
+    project_lengths: bool = False,
+    progress: Optional[ProgressFunction] = None,
+) -> CCanal:
+    """The C-canal surface along ``guide`` from a convex planar ``section``: by ``lengths`` or to a ``curve``."""
+    if (lengths is None) == (curve is None):
+        raise ArgumentError("lengths: expected either lengths or a curve")
+    a, b = _arrays.points(guide, "guide"), _arrays.points(section, "section")
+    own = None if lengths is None else _of_length(lengths, "lengths", a.length)
+    second = _arrays.Block(None, 0) if curve is None else _arrays.points(curve, "curve")
+    made, deviations, projected, cancelled = _doubles(a.length), _doubles(a.length), _ints(a.length), ctypes.c_int()
+    flags = (int(_arrays.truth(curve_closed, "curve_closed")), int(_arrays.truth(project_lengths, "project_lengths")))
+    with _Watch(progress) as watch:
+        outputs = (made, deviations, None, projected, ctypes.byref(cancelled))
+        handle = lib.shapeop_canalCCanal(*a, *b, own, *second, *flags, watch.callback, None, *outputs)
+        surface = CanalSurface._of(handle)
+    rows = surface.shape[0]
+    return CCanal(
+        surface,
+        _arrays.doubles((ctypes.c_double * rows)(*made[:rows])),
+        _arrays.doubles((ctypes.c_double * rows)(*deviations[:rows])),
+        _truths(projected[:rows]),
+        bool(cancelled.value),
+    )
+
+
+def curve_points(
+    points: Any, count: int, spacing: Union[Spacing, str] = Spacing.ARC_LENGTH, is_closed: bool = False
+) -> tuple[Any, Any]:
+    """``count`` points of the spline through ``points``, and its unit tangents there."""
+    block, number = _arrays.points(points), _arrays.integer(count, "count")
+    out, tangents = _doubles(3 * number), _doubles(3 * number)
+    closed, kind = int(_arrays.truth(is_closed, "is_closed")), _arrays.member(Spacing, spacing, "spacing")
+    check(lib.shapeop_canalCurvePoints(*block, closed, kind, out, tangents, number))
+    return _arrays.shaped(out, number, 3), _arrays.shaped(tangents, number, 3)
+
+
+def normals(points: Any, angle: float = 0.0, first: Optional[Any] = None, is_closed: bool = False) -> tuple[Any, Any]:
+    """Normals along a curve through points that turn as little as possible; and frames mirrored from point to point."""
+    block = _arrays.points(points)
+    out, frames = _doubles(3 * block.length), _doubles(9 * block.length)
+    closed, vector = int(_arrays.truth(is_closed, "is_closed")), _optional(first, "first")
+    arguments = (block.pointer, None, block.length, closed, _arrays.real(angle, "angle"), vector)
+    check(lib.shapeop_canalNormals(*arguments, out, frames))
+    return _arrays.shaped(out, block.length, 3), _arrays.shaped(frames, block.length, 3, 3)
+
+
+def touching_spheres(points: Any, normals: Any, curve: Any, curve_closed: bool = False) -> tuple[Any, list[int]]:
+    """The spheres, (n, 4), that touch a curve in points, along its normals, and the spline of ``curve``; and flags."""
+    a, b, c = _arrays.points(points), _arrays.points(normals, "normals"), _arrays.points(curve, "curve")
+    if a.length != b.length:
+        raise ArgumentError(f"normals: expected {a.length}, found {b.length}")
+    spheres, flags = _doubles(4 * a.length), _ints(a.length)
+    closed = int(_arrays.truth(curve_closed, "curve_closed"))
+    outputs = (spheres, None, None, flags, None)
+    check(lib.shapeop_canalTouchingSpheres(a.pointer, b.pointer, a.length, *c, closed, *outputs))
+    return _arrays.shaped(spheres, a.length, 4), list(flags)
+
+
+def characteristic_circles(spheres: Any) -> Any:
+    """The circles in which each sphere ``[x, y, z, radius]`` meets the next."""
+    rows = [[float(number) for number in sphere] for sphere in spheres]
+    if any(len(row) != 4 for row in rows):
+        raise ArgumentError(f"spheres: expected 4 numbers for each, found {_arrays.found(spheres)}")
+    block = _arrays.numbers([number for row in rows for number in row], "spheres")
+    out = _doubles(7 * (len(rows) - 1))
+    check(lib.shapeop_canalCharacteristicCircles(block.pointer, len(rows), out))
+    return _arrays.shaped(out, max(len(rows) - 1, 0), 7)
+
+
+def mesh_circles(circles: Any, guide: Any, row: Any, wraps: bool = False) -> Any:
+    """The grid of which row i is on circle i and row 0 is ``row``; ``guide`` has a point of each circle."""
+    block, a, b = _circles(circles, "circles"), _arrays.points(guide, "guide"), _arrays.points(row, "row")
+    if a.length != block.length:
+        raise ArgumentError(f"guide: expected {block.length} points, found {a.length}")
+    out, closed = _doubles(3 * block.length * b.length), int(_arrays.truth(wraps, "wraps"))
+    check(lib.shapeop_canalMeshCircles(block.pointer, a.pointer, block.length, *b, closed, out))
+    return _arrays.shaped(out, block.length, b.length, 3)
+
+
+def center(
+    corners: Any, kind: Union[Center, str] = Center.MIDDLE, value: float = 0.0, point: Optional[Any] = None
+) -> tuple[Optional[Any], float, float]:
+    """A center of inversion for four points of a circle (``None``: at infinity), its angle, and its ratio."""
+    block = _arrays.points(corners, "corners")
+    if block.length != 4:
+        raise ArgumentError(f"corners: expected 4 points, found {block.length}")
+    out, infinite, omega, ratio = _doubles(3), ctypes.c_int(), ctypes.c_double(), ctypes.c_double()
+    choice = (_arrays.member(Center, kind, "kind"), _arrays.real(value, "value"), _optional(point, "point"))
+    outputs = (out, ctypes.byref(infinite), ctypes.byref(omega), ctypes.byref(ratio))
+    check(lib.shapeop_canalCenter(block.pointer, *choice, *outputs))
+    return (None if infinite.value else _arrays.doubles(out)), omega.value, ratio.value
+
+
+def ratio_limits(corners: Any) -> tuple[float, float]:
+    """The ends of the open interval of ratios of parallel sides that four points of a circle allow."""
+    block = _arrays.points(corners, "corners")
+    if block.length != 4:
+        raise ArgumentError(f"corners: expected 4 points, found {block.length}")
+    limits = _doubles(2)
+    check(lib.shapeop_canalCenters(block.pointer, None, None, None, limits))
+    return limits[0], limits[1]
+
+
+def family_names() -> tuple[str, ...]:
+    """The names of the families of super-canal surfaces."""
+    return tuple(text(lib.shapeop_canalFamilyName(i)) for i in range(lib.shapeop_canalFamilyCount()))
+
+
+def family_steps(name: str) -> tuple[Kind, list[Step]]:
+    """How surfaces of a family are made: the kind of the base, and the kinds of the transformations after it."""
+    kind, count, steps = ctypes.c_int(), ctypes.c_int(), _ints(8)
+    family = _arrays.name_bytes(name, "name")
+    check(lib.shapeop_canalFamilySteps(family, ctypes.byref(kind), steps, 8, ctypes.byref(count)))
+    return Kind(kind.value), [Step(step) for step in steps[: count.value]]
