@@ -51,6 +51,7 @@ pub mod properties;
 mod quad;
 pub mod quality;
 pub mod revolution_centers;
+mod section_circle;
 pub mod smoothing;
 mod smoothing_net;
 pub mod spherical_guide;
