@@ -145,14 +145,8 @@ unsafe impl SizedStruct for shapeop_solve_report {
 /// `options` is null, or its `struct_size` is set and it is writable for so many bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_defaultSolveOptions(options: *mut shapeop_solve_options) -> shapeop_err {
-    code(guard_free(|| {
-        // SAFETY: the caller vouches for `struct_size`, and then for so many bytes.
-        unsafe {
-            let size = structs::size("options", options)?;
-            structs::write(options, size, &default_options());
-        }
-        Ok(())
-    }))
+    // SAFETY: the caller vouches for `struct_size`, and then for so many bytes.
+    code(guard_free(|| unsafe { structs::tell("options", options, &default_options()) }))
 }
 
 /// Iterates until `options` (null: the defaults) say to stop; in dynamic mode within one time step. Iterations are

@@ -73,3 +73,16 @@ pub(super) unsafe fn write<T: SizedStruct>(out: *mut T, size: usize, value: &T) 
         ptr::copy_nonoverlapping(from, out.cast::<u8>().add(first), length);
     }
 }
+
+/// Writes `value` to the caller's struct at `out` as far as its size goes. `struct_size` stays.
+///
+/// # Safety
+/// `out` is null, or its `struct_size` is set and it is writable for so many bytes.
+pub(super) unsafe fn tell<T: SizedStruct>(name: &str, out: *mut T, value: &T) -> Result<()> {
+    // SAFETY: the caller vouches for `struct_size`, and then for so many bytes.
+    unsafe {
+        let size = size(name, out)?;
+        write(out, size, value);
+    }
+    Ok(())
+}

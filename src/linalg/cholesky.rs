@@ -1,6 +1,6 @@
 //! The Cholesky factor of a sparse symmetric positive definite matrix: ordering, factor, solve.
 //!
-//! The only file that knows faer. The matrix is scaled to a unit diagonal before it is factorised, so a pivot can be
+//! The matrix is scaled to a unit diagonal before it is factorised, so a pivot can be
 //! judged by its own size whatever the weights are.
 
 use faer::dyn_stack::{MemBuffer, MemStack};

@@ -166,14 +166,8 @@ fn stop(stop: Stop) -> shapeop_canal_stop {
 /// `options` is null, or its `struct_size` is set and it is writable for so many bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalDefaultSmoothOptions(options: *mut shapeop_canal_smooth_options) -> shapeop_err {
-    code(guard_free(|| {
-        // SAFETY: the caller vouches for `struct_size`, and then for so many bytes.
-        unsafe {
-            let size = structs::size("options", options)?;
-            structs::write(options, size, &default_options());
-        }
-        Ok(())
-    }))
+    // SAFETY: the caller vouches for `struct_size`, and then for so many bytes.
+    code(guard_free(|| unsafe { structs::tell("options", options, &default_options()) }))
 }
 
 /// Smooths a strip with a frame at its first point (`frame`: the unit tangents `t1`, near the guide's, and `t2`):

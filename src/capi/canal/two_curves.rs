@@ -167,14 +167,8 @@ fn default_options() -> shapeop_canal_fit_options {
 /// `options` is null, or its `struct_size` is set and it is writable for so many bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_canalDefaultFitOptions(options: *mut shapeop_canal_fit_options) -> shapeop_err {
-    code(guard_free(|| {
-        // SAFETY: the caller vouches for `struct_size`, and then for so many bytes.
-        unsafe {
-            let size = structs::size("options", options)?;
-            structs::write(options, size, &default_options());
-        }
-        Ok(())
-    }))
+    // SAFETY: the caller vouches for `struct_size`, and then for so many bytes.
+    code(guard_free(|| unsafe { structs::tell("options", options, &default_options()) }))
 }
 
 /// # Safety

@@ -20,17 +20,18 @@ use super::chain::Transform;
 use super::combescure::fourth_corner;
 use super::frame::Frame;
 use super::net::Net;
-use super::polyline::start_tangent;
+use super::polyline::{polyline, start_tangent};
 use super::quad::Quad;
 use super::section_circle::{first_circle, turned_along};
+use super::strip::check_positive;
 use super::surface::{BaseKind, SuperCanal};
-use crate::error::{Error, Result, Status, finite};
+use crate::error::{Error, Result, Status};
 use crate::geometry::circle::{Circle, reflect, second_point};
 use crate::mesh::curve::NearestOnCurve;
-use crate::mesh::grid::{check_finite, diagonal};
+use crate::mesh::grid::diagonal;
 use crate::mesh::{ClosestPoints, Grid};
 
-/// How far the section's first point may be from the guide's, over the extent.
+/// How far the section's first point may be from the guide's, over the extent; and a first length from the section's, over that.
 const APART: f64 = 1e-9;
 
 /// Places between the ends of a quad's free arc at which a length is tried first, and how near to the ends: at an end the border
@@ -104,8 +105,12 @@ pub fn c_canal(
     is_projected: bool,
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<CCanal> {
-    check_points("guide", guide, 2)?;
-    check_points("section", section, 3)?;
+    polyline("guide", guide)?;
+    polyline("section", section)?;
+    if section.len() < 3 {
+        let reason = format!("expected at least 3 points, found {}", section.len());
+        return Err(Error::new(Status::InvalidArgumentLength, reason).at("section"));
+    }
     let extent = diagonal(guide).max(diagonal(section));
     let apart = guide[0].distance(section[0]);
     if apart > APART * extent {
@@ -114,7 +119,11 @@ pub fn c_canal(
     }
     let first_length = section[0].distance(section[section.len() - 1]);
     if let Target::Lengths(lengths) = target {
-        check_lengths(lengths, guide.len(), first_length)?;
+        check_positive("lengths", lengths, guide.len())?;
+        if !((lengths[0] - first_length).abs() <= APART * first_length) {
+            let reason = format!("expected {first_length}, the distance of the section's ends, found {}", lengths[0]);
+            return Err(Error::new(Status::InvalidValue, reason).at("lengths[0]"));
+        }
     }
     let (circle, samples) = first_circle(section)?;
     let t2 = Circle { normal: turned_along(&circle, &samples), ..circle }.tangent_at(samples[0]);
@@ -145,41 +154,6 @@ pub fn c_canal(
     surface.push(Transform::Combescure { column: vec![1.0; sections.len() - 1], row: row.collect() })?;
     let Sections { lengths, deviations, attainable, projected, is_cancelled } = result;
     Ok(CCanal { surface, lengths, deviations, attainable, projected, is_cancelled })
-}
-
-fn check_points(name: &str, points: &[DVec3], least: usize) -> Result<()> {
-    check_finite(name, points)?;
-    if points.len() < least {
-        let reason = format!("expected at least {least} points, found {}", points.len());
-        return Err(Error::new(Status::InvalidArgumentLength, reason).at(name));
-    }
-    let extent = diagonal(points);
-    match (1..points.len()).find(|&k| !(points[k].distance(points[k - 1]) > 1e-12 * extent)) {
-        None => Ok(()),
-        Some(k) => {
-            let reason = format!("it repeats the point before, {}", points[k]);
-            Err(Error::new(Status::Degenerate, reason).at(format!("{name}[{k}]")))
-        }
-    }
-}
-
-fn check_lengths(lengths: &[f64], count: usize, first: f64) -> Result<()> {
-    if lengths.len() != count {
-        let reason = format!("expected one for each of {count} guide points, found {}", lengths.len());
-        return Err(Error::new(Status::InvalidArgumentLength, reason).at("lengths"));
-    }
-    for (k, &length) in lengths.iter().enumerate() {
-        let name = format!("lengths[{k}]");
-        if !(finite(&name, length)? > 0.0) {
-            let reason = format!("expected a length above 0, found {length}");
-            return Err(Error::new(Status::InvalidValue, reason).at(name));
-        }
-    }
-    if !((lengths[0] - first).abs() <= 1e-9 * first) {
-        let reason = format!("expected {first}, the distance between the section's ends, found {}", lengths[0]);
-        return Err(Error::new(Status::InvalidValue, reason).at("lengths[0]"));
-    }
-    Ok(())
 }
 
 /// What has been found so far.

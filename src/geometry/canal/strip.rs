@@ -345,7 +345,7 @@ pub(super) fn check_guide(points: &[DVec3], start: DVec3) -> Result<()> {
     }
 }
 
-fn check_positive(name: &str, values: &[f64], count: usize) -> Result<()> {
+pub(super) fn check_positive(name: &str, values: &[f64], count: usize) -> Result<()> {
     super::combescure::check_count(name, values, count)?;
     match values.iter().position(|&value| !(value > 0.0)) {
         None => Ok(()),
