@@ -211,8 +211,10 @@ pub fn rationalize(mesh: &Mesh, length: Option<f64>, options: &RecipeOptions) ->
 
 /// Gives every face a circumscribed circle to the last digits, for going on with a circular net: a hard `Circle` per face, none
 /// for triangles. Of all such meshes that is found which is nearest to the design and whose moves are fair; a circular net stays what it
-/// is until a handle moves. Far from any circular mesh sweeps are slow, as the projection onto a circle is not the nearest one: what is
-/// left when iterations run out is told by the report. Anchors are handles, as in [`rationalize`].
+/// is until a handle moves. Edges of circular quads follow lines of principal curvature: a mesh laid out otherwise (along the straight
+/// lines of a hyperbolic paraboloid, or with a boundary held fast) has far to go, or none is found; sweeps are slow there, as the
+/// projection onto a circle is not the nearest one. What is left when iterations run out is told by the report. Anchors are handles,
+/// as in [`rationalize`].
 ///
 /// # Errors
 /// As [`planarize`]; `closeness` is 0.
