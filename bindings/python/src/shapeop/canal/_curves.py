@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Optional, Union
 
 from .. import _abi, _arrays
 from .._library import ArgumentError, check, lib, text
-from ._arguments import _circles, _doubles, _ints, _of_length, _optional, _truths, _Watch
+from ._arguments import _circles, _doubles, _ints, _of_length, _optional, _truths, _vector, _Watch
 from ._kinds import Center, Kind, ProgressFunction, Section, Spacing, Step
 from ._strips import _set
 from ._surface import CanalSurface
@@ -26,6 +26,20 @@ class Fit(NamedTuple):
     is_outward: bool
 
 
+class Swept(NamedTuple):
+    """A surface of a profile that moves along a rail, and what was found.
+
+    ``obliquity``: the angle in radians between the normal of the profile's plane and the rail's start.
+    ``reversed_count``: how many edges point the other way than the rail's, where the profile reaches beyond the rail's
+    evolute. ``closing_gap``: for a closed rail, how far the profile is from itself after one turn.
+    """
+
+    surface: CanalSurface
+    obliquity: float
+    reversed_count: int
+    closing_gap: float
+
+
 class CCanal(NamedTuple):
     """A C-canal surface and how well it meets what was asked for; one entry for each row."""
 
@@ -36,6 +50,16 @@ class CCanal(NamedTuple):
     is_cancelled: bool
 
 
+def _fit_options(options: dict[str, Any]) -> Any:
+    asked = _abi.shapeop_canal_fit_options(struct_size=ctypes.sizeof(_abi.shapeop_canal_fit_options))
+    check(lib.shapeop_canalDefaultFitOptions(ctypes.byref(asked)))
+    for name, kind in (("section", Section), ("spacing", Spacing)):
+        if name in options:
+            options[name] = _arrays.member(kind, options[name], name)
+    _set(asked, options)
+    return asked
+
+
 def fit(guide: Any, curve: Any, *, guide_closed: bool = False, curve_closed: bool = False, **options: Any) -> Fit:
     """The canal surface through the spline of ``guide`` that touches the spline of ``curve``.
 
@@ -43,12 +67,7 @@ def fit(guide: Any, curve: Any, *, guide_closed: bool = False, curve_closed: boo
     ``section`` and ``spacing`` also by name.
     """
     a, b = _arrays.points(guide, "guide"), _arrays.points(curve, "curve")
-    asked = _abi.shapeop_canal_fit_options(struct_size=ctypes.sizeof(_abi.shapeop_canal_fit_options))
-    check(lib.shapeop_canalDefaultFitOptions(ctypes.byref(asked)))
-    for name, kind in (("section", Section), ("spacing", Spacing)):
-        if name in options:
-            options[name] = _arrays.member(kind, options[name], name)
-    _set(asked, options)
+    asked = _fit_options(options)
     told = _abi.shapeop_canal_fit_report(struct_size=ctypes.sizeof(_abi.shapeop_canal_fit_report))
     capacity = max(asked.circle_count, a.length) + 1
     circles, spheres, circle_count, sphere_count = (
@@ -84,6 +103,24 @@ def fit(guide: Any, curve: Any, *, guide_closed: bool = False, curve_closed: boo
         told.closing_gap,
         bool(told.is_outward),
     )
+
+
+def _swept(function: Any, rail: Any, profile: Any) -> Swept:
+    rails, profiles = _arrays.points(rail, "rail"), _arrays.points(profile, "profile")
+    obliquity, reversed_count, gap = ctypes.c_double(), ctypes.c_int(), ctypes.c_double()
+    outputs = (ctypes.byref(obliquity), ctypes.byref(reversed_count), ctypes.byref(gap))
+    surface = CanalSurface._of(function(*rails, *profiles, *outputs))
+    return Swept(surface, obliquity.value, reversed_count.value, gap.value)
+
+
+def moulding(rail: Any, profile: Any) -> Swept:
+    """The moulding surface of a planar rail and a profile in an orthogonal plane that starts on it, and findings."""
+    return _swept(lib.shapeop_canalMoulding, rail, profile)
+
+
+def monge(rail: Any, profile: Any) -> Swept:
+    """The Monge surface of a rail in space and a planar profile that starts on it, and findings."""
+    return _swept(lib.shapeop_canalMonge, rail, profile)
 
 
 def c_canal(
@@ -160,6 +197,42 @@ def characteristic_circles(spheres: Any) -> Any:
     out = _doubles(7 * (len(rows) - 1))
     check(lib.shapeop_canalCharacteristicCircles(block.pointer, len(rows), out))
     return _arrays.shaped(out, max(len(rows) - 1, 0), 7)
+
+
+def column_on_circles(circles: Any, start: Any, guide: Optional[Any] = None) -> Any:
+    """A point of each circle, from ``start``, a point of the first, on.
+
+    With ``guide``, a point of each circle, both make a strip of circular quads; without, it is a column along which a
+    mesh closes around whole circles.
+    """
+    block, first = _circles(circles, "circles"), _vector(start, "start")
+    other = _arrays.Block(None, block.length) if guide is None else _arrays.points(guide, "guide")
+    if other.length != block.length:
+        raise ArgumentError(f"guide: expected {block.length} points, found {other.length}")
+    out = _doubles(3 * block.length)
+    check(lib.shapeop_canalColumn(*block, first, other.pointer, out))
+    return _arrays.shaped(out, block.length, 3)
+
+
+def section_points(
+    circle: Any,
+    start: Any,
+    count: int,
+    section: Union[Section, str] = Section.WHOLE,
+    target: Optional[Any] = None,
+    **options: Any,
+) -> Any:
+    """``count`` points of a section of a circle at equal angles, from its point ``start`` on.
+
+    ``target``: where the second curve passes, for :attr:`Section.TO_CURVE`. ``options``: those on the section of
+    ``shapeop_canal_fit_options`` in the C header, such as ``to_angle``.
+    """
+    number = _arrays.integer(count, "count")
+    options = {**options, "section": _arrays.member(Section, section, "section"), "column_count": number}
+    out, asked, own = _doubles(3 * number), _fit_options(options), _of_length(circle, "circle", 7)
+    points = (_vector(start, "start"), _optional(target, "target"))
+    check(lib.shapeop_canalSectionPoints(own, *points, ctypes.byref(asked), out))
+    return _arrays.shaped(out, number, 3)
 
 
 def mesh_circles(circles: Any, guide: Any, row: Any, wraps: bool = False) -> Any:
