@@ -264,14 +264,21 @@ def test_faces_are_cut_at_fractions() -> None:
 
 
 def test_what_a_profile_along_a_rail_does_is_told() -> None:
-    # The rail is on a circle. The profile leans by 0.1 from the plane across it and ends beyond the center.
-    rail = [[cos(0.2 * k), sin(0.2 * k), 0] for k in range(6)]
+    # The rail is on a circle. The profile leans by 0.1 from the plane across it, to either side in turns, and ends
+    # beyond the center.
+    rail = [[cos(0.2 * k), sin(0.2 * k), 0.0] for k in range(6)]
     profile = [[1, 0, 0], [1 - 0.5 * cos(0.1), -0.5 * sin(0.1), 0.5], [1 - 1.5 * cos(0.1), -1.5 * sin(0.1), 0.7]]
+    point, expected = profile[2], 0
+    for a, b in zip(rail, rail[1:]):
+        image = mirrored(point, a, b)
+        expected += sum((b[k] - a[k]) * (image[k] - point[k]) for k in range(3)) < 0
+        point = image
+    assert expected == 2
     for sweep in (canal.moulding, canal.monge):
         found = sweep(rail, profile)
         assert found.surface.shape == (6, 3)
         assert abs(found.obliquity - 0.1) < 1e-9
-        assert found.reversed_count == 5
+        assert found.reversed_count == expected
         assert found.closing_gap == 0
     # A closed rail in space: the profile comes back mirrored in the bisecting planes of all edges.
     ring = [[cos(pi / 3 * k), sin(pi / 3 * k), 0.2 * (k % 3)] for k in range(6)]
