@@ -267,7 +267,7 @@ def test_what_a_profile_along_a_rail_does_is_told() -> None:
     # The rail is on a circle. The profile leans by 0.1 from the plane across it, to either side in turns, and ends
     # beyond the center.
     rail = [[cos(0.2 * k), sin(0.2 * k), 0.0] for k in range(6)]
-    profile = [[1, 0, 0], [1 - 0.5 * cos(0.1), -0.5 * sin(0.1), 0.5], [1 - 1.5 * cos(0.1), -1.5 * sin(0.1), 0.7]]
+    profile = [[1.0, 0.0, 0.0], [1 - 0.5 * cos(0.1), -0.5 * sin(0.1), 0.5], [1 - 1.5 * cos(0.1), -1.5 * sin(0.1), 0.7]]
     point, expected = profile[2], 0
     for a, b in zip(rail, rail[1:]):
         image = mirrored(point, a, b)
