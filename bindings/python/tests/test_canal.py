@@ -146,6 +146,27 @@ def test_two_parallel_lines_on_a_cylinder() -> None:
     radius = (4 - 0.625**2) / (2 * 2**0.5)
     assert all(abs(float(circle[6]) - radius) < 1e-9 for circle in found.circles)
     assert all(abs(float(sphere[3]) - (radius**2 + 0.625**2) ** 0.5) < 1e-9 for sphere in found.spheres)
+    assert found.sphere_flags == [0] * len(found.spheres)
+    # A curve that ends before the guide does: the spheres beyond pass through its end.
+    short = canal.fit(guide, curve[:6], circle_count=5, column_count=8, has_normal=1, normal_y=-1, normal_z=-1)
+    middles = [0.625 + 1.25 * k for k in range(4)]
+    assert short.sphere_flags == [int(middle > 3) for middle in middles]
+
+
+def test_lengths_of_a_c_canal_surface_that_are_not_attainable() -> None:
+    guide = [[float(k), 0.0, 0.0] for k in range(4)]
+    section = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.5], [0.0, 2.0, 0.0]]
+    asked = [2.0, 2.1, 2.2, 3.4]
+    with pytest.raises(shapeop.GeometryError, match=r"lengths\[3\]"):
+        canal.c_canal(guide, section, asked)
+    found = canal.c_canal(guide, section, asked, project_lengths=True)
+    limits = [[float(length) for length in pair] for pair in found.attainable]
+    # Of the first section its own length; of the next at most the diameter of the first quad's circle.
+    assert limits[0] == [2.0, 2.0]
+    assert 0 < 5**0.5 - limits[1][1] < 1e-3
+    assert near(found.lengths, [*asked[:3], limits[3][1]], 1e-9)
+    assert near(found.deviations, [0, 0, 0, asked[3] - limits[3][1]], 1e-9)
+    assert found.is_projected == [False, False, False, True]
 
 
 def test_frames_and_closing() -> None:

@@ -14,7 +14,12 @@ from ._surface import CanalSurface
 
 
 class Fit(NamedTuple):
-    """A canal surface that fits two curves."""
+    """A canal surface that fits two curves.
+
+    ``sphere_flags``, one for each sphere: bits 1, it passes through an end of the second curve and is not tangent to
+    it; 2, it touches another branch than the sphere before; 4, it is on the other side of the first curve than that; 8,
+    another branch is inside.
+    """
 
     surface: CanalSurface
     circles: Any
@@ -24,6 +29,7 @@ class Fit(NamedTuple):
     tangent_gap: float
     closing_gap: float
     is_outward: bool
+    sphere_flags: list[int]
 
 
 class Swept(NamedTuple):
@@ -41,13 +47,17 @@ class Swept(NamedTuple):
 
 
 class CCanal(NamedTuple):
-    """A C-canal surface and how well it meets what was asked for; one entry for each row."""
+    """A C-canal surface and how well it meets what was asked for; one entry for each row.
+
+    ``attainable``: the least and the greatest length that the rows before left, (rows, 2).
+    """
 
     surface: CanalSurface
     lengths: Any
     deviations: Any
     is_projected: list[bool]
     is_cancelled: bool
+    attainable: Any
 
 
 def _fit_options(options: dict[str, Any]) -> Any:
@@ -70,12 +80,8 @@ def fit(guide: Any, curve: Any, *, guide_closed: bool = False, curve_closed: boo
     asked = _fit_options(options)
     told = _abi.shapeop_canal_fit_report(struct_size=ctypes.sizeof(_abi.shapeop_canal_fit_report))
     capacity = max(asked.circle_count, a.length) + 1
-    circles, spheres, circle_count, sphere_count = (
-        _doubles(7 * capacity),
-        _doubles(4 * capacity),
-        ctypes.c_int(),
-        ctypes.c_int(),
-    )
+    circles, spheres, flags = _doubles(7 * capacity), _doubles(4 * capacity), _ints(capacity)
+    circle_count, sphere_count = ctypes.c_int(), ctypes.c_int()
     handle = lib.shapeop_canalFit(
         *a,
         int(_arrays.truth(guide_closed, "guide_closed")),
@@ -86,7 +92,7 @@ def fit(guide: Any, curve: Any, *, guide_closed: bool = False, curve_closed: boo
         capacity,
         ctypes.byref(circle_count),
         spheres,
-        None,
+        flags,
         capacity,
         ctypes.byref(sphere_count),
         ctypes.byref(told),
@@ -102,6 +108,7 @@ def fit(guide: Any, curve: Any, *, guide_closed: bool = False, curve_closed: boo
         told.tangent_gap,
         told.closing_gap,
         bool(told.is_outward),
+        list(flags[:m]),
     )
 
 
@@ -139,10 +146,11 @@ def c_canal(
     a, b = _arrays.points(guide, "guide"), _arrays.points(section, "section")
     own = None if lengths is None else _of_length(lengths, "lengths", a.length)
     second = _arrays.Block(None, 0) if curve is None else _arrays.points(curve, "curve")
-    made, deviations, projected, cancelled = _doubles(a.length), _doubles(a.length), _ints(a.length), ctypes.c_int()
+    made, deviations, attainable = (_doubles(n * a.length) for n in (1, 1, 2))
+    projected, cancelled = _ints(a.length), ctypes.c_int()
     flags = (int(_arrays.truth(curve_closed, "curve_closed")), int(_arrays.truth(project_lengths, "project_lengths")))
     with _Watch(progress) as watch:
-        outputs = (made, deviations, None, projected, ctypes.byref(cancelled))
+        outputs = (made, deviations, attainable, projected, ctypes.byref(cancelled))
         handle = lib.shapeop_canalCCanal(*a, *b, own, *second, *flags, watch.callback, None, *outputs)
         surface = CanalSurface._of(handle)
     rows = surface.shape[0]
@@ -152,6 +160,7 @@ def c_canal(
         _arrays.doubles((ctypes.c_double * rows)(*deviations[:rows])),
         _truths(projected[:rows]),
         bool(cancelled.value),
+        _arrays.shaped((ctypes.c_double * (2 * rows))(*attainable[: 2 * rows]), rows, 2),
     )
 
 

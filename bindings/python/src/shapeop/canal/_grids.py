@@ -89,7 +89,8 @@ def parallel_space(points: Any, quads: Any) -> Any:
 def nearest_parallel(points: Any, quads: Any, handles: Any, targets: Any) -> Any:
     """The parallel mesh whose points ``handles`` are nearest to ``targets``.
 
-    Of more than 1000 points all are targets of their own, a millionth as heavy: handles may be missed by as little.
+    Of more than 1000 points all are targets of their own, a millionth as heavy as a handle: the more of them must move
+    far, the less exactly handles are met.
     """
     block, lists = _arrays.points(points), _arrays.face_lists(quads, "quads", 4)
     indices, goals = _arrays.ids(handles, "handles"), _arrays.points(targets, "targets")
