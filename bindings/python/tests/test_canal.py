@@ -313,6 +313,32 @@ def test_what_a_profile_along_a_rail_does_is_told() -> None:
     assert found.surface.wraps == (False, False)
 
 
+def test_what_a_moulding_surface_of_given_corners_misses_is_told() -> None:
+    curve = [[-2, 0, 0], [-3, 0.5, 0], [-2.5, 1.2, 0], [-1, 1, 0]]
+
+    def arch(count: int) -> list[list[float]]:
+        parts = [k / count for k in range(count + 1)]
+        return [[4 * part - 2, 0.0, 2 * sin(pi * part)] for part in parts]
+
+    # The corners are those of an isosceles trapezoid: no inversion. Of an odd number of symmetric edges the middle one
+    # has the trapezoid's mirror; the mirrors of the others cancel.
+    found = canal.m_moulding(curve, arch(13), [1, 1, 0])
+    assert found.surface.family == "moulding"
+    assert found.corner_gap < 1e-12
+    assert near(found.surface.points[3][13], [1, 1, 0])
+    assert found.closing_gap == 0
+    rows = rows_of(found.surface.base_points)
+    edges = [[[b[k] - a[k] for k in range(3)] for a, b in zip(row, row[1:])] for row in rows]
+    turned = [sum(x * y for x, y in zip(edge, own)) < 0 for row in edges for edge, own in zip(row, edges[0])]
+    assert found.reversed_count == sum(turned) > 0
+    # Of an even number it misses the corner.
+    found = canal.m_moulding(curve, arch(4), [1, 1, 0])
+    assert found.corner_gap > 1e-3
+    assert abs(found.corner_gap - dist(rows_of(found.surface.points)[3][4], [1, 1, 0])) < 1e-12
+    same = canal.CanalSurface.m_moulding(curve, arch(4), [1, 1, 0])
+    assert rows_of(same.points) == rows_of(found.surface.points)
+
+
 def test_kinks() -> None:
     # Unit squares in the plane: along the crease tangents lean by the angle, and back at the next column.
     grid = [[[float(i), float(j), 0.0] for j in range(3)] for i in range(3)]

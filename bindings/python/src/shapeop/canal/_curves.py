@@ -10,7 +10,7 @@ from .._library import ArgumentError, check, lib, text
 from ._arguments import _circles, _doubles, _ints, _of_length, _optional, _truths, _vector, _Watch
 from ._kinds import Center, Kind, ProgressFunction, Section, Spacing, Step
 from ._strips import _set
-from ._surface import CanalSurface
+from ._surface import CanalSurface, _m_moulding
 
 
 class Fit(NamedTuple):
@@ -44,6 +44,16 @@ class Swept(NamedTuple):
     obliquity: float
     reversed_count: int
     closing_gap: float
+
+
+class MMoulding(NamedTuple):
+    """As :class:`Swept`, for the base of an inversion; ``corner_gap``: how far the last corner is from ``p3``, or 0."""
+
+    surface: CanalSurface
+    obliquity: float
+    reversed_count: int
+    closing_gap: float
+    corner_gap: float
 
 
 class CCanal(NamedTuple):
@@ -128,6 +138,21 @@ def moulding(rail: Any, profile: Any) -> Swept:
 def monge(rail: Any, profile: Any) -> Swept:
     """The Monge surface of a rail in space and a planar profile that starts on it, and findings."""
     return _swept(lib.shapeop_canalMonge, rail, profile)
+
+
+def m_moulding(
+    curve: Any,
+    rail: Any,
+    p3: Optional[Any] = None,
+    center: Union[Center, str] = Center.CHORD,
+    value: float = 0.0,
+    point: Optional[Any] = None,
+) -> MMoulding:
+    """The surface of :meth:`CanalSurface.m_moulding`, and findings."""
+    obliquity, gap, corner_gap, reversed_count = *(ctypes.c_double() for _ in range(3)), ctypes.c_int()
+    outputs = tuple(ctypes.byref(each) for each in (obliquity, reversed_count, gap, corner_gap))
+    surface = CanalSurface._of(_m_moulding(curve, rail, p3, center, value, point, outputs))
+    return MMoulding(surface, obliquity.value, reversed_count.value, gap.value, corner_gap.value)
 
 
 def c_canal(

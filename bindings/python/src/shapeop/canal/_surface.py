@@ -12,6 +12,14 @@ from ._arguments import _doubles, _frame, _Grid, _ints, _optional, _vector
 from ._kinds import Center, Kind, Kinks, Wraps
 
 
+def _m_moulding(curve: Any, rail: Any, p3: Any, center: Any, value: Any, point: Any, outputs: Any) -> Optional[int]:
+    curves = (*_arrays.points(curve, "curve"), *_arrays.points(rail, "rail"))
+    kind, number = _arrays.member(Center, center, "center"), _arrays.real(value, "value")
+    choice = (_optional(p3, "p3"), kind, number, _optional(point, "point"))
+    handle: Optional[int] = lib.shapeop_canalMMoulding(*curves, *choice, *outputs)
+    return handle
+
+
 class CanalSurface:
     """A circular net with a frame at each point, and the transformations that made it of its base.
 
@@ -174,21 +182,9 @@ class CanalSurface:
         """The M-moulding surface through a planar curve and a rail in space that starts on it.
 
         ``p3``: the far corner, on one circle with the first point and both ends; without it ``point`` is the center
-        of inversion.
+        of inversion. What was found of it, :func:`m_moulding` tells too.
         """
-        handle = lib.shapeop_canalMMoulding(
-            *_arrays.points(curve, "curve"),
-            *_arrays.points(rail, "rail"),
-            _optional(p3, "p3"),
-            _arrays.member(Center, center, "center"),
-            _arrays.real(value, "value"),
-            _optional(point, "point"),
-            None,
-            None,
-            None,
-            None,
-        )
-        return cls._of(handle)
+        return cls._of(_m_moulding(curve, rail, p3, center, value, point, (None, None, None, None)))
 
     # Ownership.
 
