@@ -2046,6 +2046,43 @@ enum shapeop_err shapeop_canalMembraneResidualOf(struct ShapeOpCanal *surface,
                                                  double *residual);
 
 /**
+ * As `shapeop_canalCreate`, for a surface that is creased along some of its rows (`direction` is 1, in which they are
+ * crossed) or columns (2): continuous there, but not smooth. `lines` has their indices, neither 0 nor beyond the last;
+ * `angles`, in radians, by how much the frames from there on are turned about the line's tangent. The angles of a line
+ * that is named twice are added.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * rows * columns` doubles, `frame` for 6; `lines` and `angles` are null or
+ * readable for `nb_kinks` values.
+ */
+SHAPEOP_API
+struct ShapeOpCanal *shapeop_canalCreateWithKinks(const double *points,
+                                                  int rows,
+                                                  int columns,
+                                                  int wraps,
+                                                  const double *frame,
+                                                  int kind,
+                                                  int direction,
+                                                  const int *lines,
+                                                  const double *angles,
+                                                  int nb_kinks);
+
+/**
+ * Writes the kinks of a surface's base, as in `shapeop_canalCreateWithKinks`, if there is room for `capacity` of them,
+ * and their number to `count`. `direction` is 0 without any. `lines`, `angles` and `direction` may be null.
+ *
+ * # Safety
+ * `direction` and `count` are null or writable for one int, `lines` and `angles` for `capacity` values.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_canalKinks(struct ShapeOpCanal *surface,
+                                    int *direction,
+                                    int *lines,
+                                    double *angles,
+                                    int capacity,
+                                    int *count);
+
+/**
  * Measures how circular quads are; `quads` has 4 point indices for each. Each output may be null: `planarity` is the
  * distance of a quad's diagonals over its mean edge, `concyclicity` that of a corner from the circle through the other
  * three over its radius, `is_in_order` whether the corners follow each other around it, so that the quad does not
@@ -2179,8 +2216,9 @@ enum shapeop_err shapeop_canalParallelSpace(const double *points,
 
 /**
  * Writes, of all meshes parallel to a mesh of quads, the one whose points `handles` are nearest to `targets` by the
- * sum of squares; among equally near ones that nearest to the mesh itself. The mesh is as for
- * `shapeop_canalParallelSpace`.
+ * sum of squares; among equally near ones that nearest to the mesh itself. Every point is in a face. Of a mesh of more
+ * than 1000 points all points are targets of their own, a millionth as heavy as the handles, and edges are parallel to
+ * 1e-12 or as near as 100 rounds bring them: `shapeop_canalCheckParallel` tells.
  *
  * # Safety
  * `points` is null or readable, `out` null or writable, for `3 * nb_points` doubles; `quads` is null or readable for
@@ -2634,14 +2672,6 @@ enum shapeop_err shapeop_canalCloseStrip(const double *guide,
                                          int *is_flipped);
 
 /**
- * Writes the default options to `options`, whose `struct_size` must be set.
- *
- * # Safety
- * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
- */
-SHAPEOP_API enum shapeop_err shapeop_canalDefaultFitOptions(struct shapeop_canal_fit_options *options);
-
-/**
  * Writes points spread over the cubic spline through given ones, and its unit tangents there, which may be null.
  * `spacing` is a `shapeop_canal_spacing`; for `SO_CANAL_SPACING_POINTS` `nb` is that of the points themselves (without
  * a last one that repeats the first of a closed curve). A closed curve's first point is not repeated.
@@ -2711,6 +2741,14 @@ enum shapeop_err shapeop_canalTouchingSpheres(const double *points,
  * `spheres` is null or readable for `4 * nb_spheres` doubles, `out` is null or writable for `7 * (nb_spheres - 1)`.
  */
 SHAPEOP_API enum shapeop_err shapeop_canalCharacteristicCircles(const double *spheres, int nb_spheres, double *out);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_canalDefaultFitOptions(struct shapeop_canal_fit_options *options);
 
 /**
  * Creates the canal surface through the points of a first curve that touches a second one: the splines through `guide`

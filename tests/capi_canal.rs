@@ -225,3 +225,80 @@ fn a_callback_ends_a_call_with_its_best() {
     assert_eq!((code, cancelled, calls), (SO_SUCCESS, 1, 1));
     assert!(axes.chunks(3).all(|axis| (axis.iter().map(|c| c * c).sum::<f64>() - 1.0).abs() < 1e-12));
 }
+
+#[test]
+fn kinks_turn_frames_and_are_told_again() {
+    // Unit squares in the plane: along a crease of column 1 the tangents t2 lean by the angle, and back at column 2.
+    let points: Vec<f64> = (0..9).flat_map(|k| [f64::from(k / 3), f64::from(k % 3), 0.0]).collect();
+    let frame = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let kind = shapeop_canal_kind::SO_CANAL_KIND_CIRCULAR as c_int;
+    let create = |direction: c_int, lines: &[c_int], angles: &[f64]| {
+        let (points, frame, nb_kinks) = (points.as_ptr(), frame.as_ptr(), lines.len() as c_int);
+        // SAFETY: live arrays of the stated lengths.
+        unsafe {
+            let (lines, angles) = (lines.as_ptr(), angles.as_ptr());
+            shapeop_canalCreateWithKinks(points, 3, 3, 0, frame, kind, direction, lines, angles, nb_kinks)
+        }
+    };
+    let surface = Surface(create(2, &[1], &[0.3]));
+    assert!(!surface.0.is_null(), "{}", message());
+    let (mut frames, mut count) = ([0.0; 81], 0);
+    let (mut direction, mut line, mut angle) = (0, 0, 0.0);
+    // SAFETY: outputs for so many values.
+    unsafe {
+        assert_eq!(shapeop_canalFrames(surface.0, frames.as_mut_ptr(), 9, &mut count), SO_SUCCESS);
+        let kinks = shapeop_canalKinks(surface.0, &mut direction, &mut line, &mut angle, 1, &mut count);
+        assert_eq!((kinks, direction, line, angle, count), (SO_SUCCESS, 2, 1, 0.3, 1));
+        // Without room only the number; no kinks of a surface without.
+        let [null, nothing] = [ptr::null_mut(), ptr::null_mut()];
+        assert_eq!(shapeop_canalKinks(surface.0, null, nothing, ptr::null_mut(), 0, &mut count), SO_SUCCESS);
+        assert_eq!(count, 1);
+        assert_eq!(shapeop_canalKinks(torus().0, &mut direction, &mut line, &mut angle, 1, &mut count), SO_SUCCESS);
+        assert_eq!((direction, line, angle, count), (0, 1, 0.3, 0));
+        assert_eq!(
+            shapeop_canalKinks(surface.0, null, nothing, ptr::null_mut(), -1, &mut count),
+            SO_INVALID_ARGUMENT_LENGTH
+        );
+    }
+    for (k, frame) in frames.chunks_exact(9).enumerate() {
+        let lean = [0.0, 0.3, -0.3][k % 3];
+        let expected = [1.0, 0.0, 0.0, 0.0, f64::cos(lean), f64::sin(lean), 0.0, -f64::sin(lean), f64::cos(lean)];
+        assert!(frame.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{k}: {frame:?}");
+    }
+    for (direction, line, angle, place) in [
+        (3, 1, 0.3, "direction"),
+        (2, 0, 0.3, "lines[0]"),
+        (1, 3, 0.3, "lines[0]"),
+        (1, -1, 0.3, "lines[0]"),
+        (1, 1, f64::NAN, "angles[0]"),
+    ] {
+        assert!(create(direction, &[line], &[angle]).is_null());
+        assert!(message().contains(place), "{}", message());
+    }
+}
+
+#[test]
+fn a_large_mesh_follows_a_handle_parallel_to_itself() {
+    // Parallel to squares are all meshes of rectangles. Pulled by a corner with the weight 1 only its column moves,
+    // whose 33 points stay with a millionth of that each: the least of (d - 3.2)^2 + 33e-6 d^2.
+    let count = 33;
+    let points: Vec<f64> = (0..count * count).flat_map(|k| [f64::from(k % count), f64::from(k / count), 0.0]).collect();
+    let quads: Vec<c_int> = (0..count * (count - 1))
+        .filter(|k| (k + 1) % count != 0)
+        .flat_map(|k| [k, k + 1, k + 1 + count, k + count])
+        .collect();
+    let (handle, target) = (count * count - 1, [f64::from(count - 1) + 3.2, f64::from(count - 1), 0.0]);
+    let mut out = vec![0.0; points.len()];
+    // SAFETY: live arrays of the stated lengths.
+    let answer = unsafe {
+        let (nb_points, nb_quads) = (count * count, quads.len() as c_int / 4);
+        let (points, quads, out) = (points.as_ptr(), quads.as_ptr(), out.as_mut_ptr());
+        shapeop_canalNearestParallel(points, nb_points, quads, nb_quads, &handle, target.as_ptr(), 1, out)
+    };
+    assert_eq!(answer, SO_SUCCESS, "{}", message());
+    for (k, (found, point)) in out.chunks_exact(3).zip(points.chunks_exact(3)).enumerate() {
+        let moved = if k % 33 == 32 { 3.2 / (1.0 + 33e-6) } else { 0.0 };
+        let expected = [point[0] + moved, point[1], 0.0];
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{k}: {found:?} {expected:?}");
+    }
+}

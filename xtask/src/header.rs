@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use crate::{declarations, shell};
 
 /// The sources of the C ABI, in the order in which the header groups functions.
-const SOURCES: [&str; 20] = [
+const SOURCES: [&str; 22] = [
     "errors",
     "handles",
     "solver",
@@ -21,10 +21,12 @@ const SOURCES: [&str; 20] = [
     "explore",
     "problem",
     "canal/surface",
+    "canal/kinks",
     "canal/grids",
     "canal/inversion",
     "canal/smoothing",
     "canal/strips",
+    "canal/touching_spheres",
     "canal/two_curves",
     "canal/revolution",
     "canal/families",

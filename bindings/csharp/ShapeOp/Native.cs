@@ -860,6 +860,28 @@ namespace ShapeOp
             double[] residual);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern CanalHandle shapeop_canalCreateWithKinks(
+            double[] points,
+            int rows,
+            int columns,
+            int wraps,
+            double[] frame,
+            int kind,
+            int direction,
+            int[] lines,
+            double[] angles,
+            int nbKinks);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalKinks(
+            CanalHandle surface,
+            int[] direction,
+            int[] lines,
+            double[] angles,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern ErrorCode shapeop_canalCheckCircular(
             double[] points,
             int nbPoints,
@@ -1194,9 +1216,6 @@ namespace ShapeOp
             int[] isFlipped);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        internal static extern ErrorCode shapeop_canalDefaultFitOptions(ref shapeop_canal_fit_options options);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern ErrorCode shapeop_canalCurvePoints(
             double[] points,
             int nbPoints,
@@ -1236,6 +1255,9 @@ namespace ShapeOp
             double[] spheres,
             int nbSpheres,
             double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_canalDefaultFitOptions(ref shapeop_canal_fit_options options);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern CanalHandle shapeop_canalFit(

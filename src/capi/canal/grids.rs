@@ -9,7 +9,7 @@ use crate::error::{Error, Result, Status};
 use crate::geometry::canal::combescure::{self, Lengths};
 use crate::geometry::canal::folds::Folds;
 use crate::geometry::canal::frame::{self, Direction, Frame};
-use crate::geometry::canal::parallel::{ParallelMeshes, check_parallel_edges};
+use crate::geometry::canal::parallel::{self, ParallelMeshes, check_parallel_edges, nearest_parallel};
 use crate::geometry::canal::quality::Quality;
 use crate::mesh::Grid;
 
@@ -243,8 +243,9 @@ pub unsafe extern "C" fn shapeop_canalParallelSpace(
 }
 
 /// Writes, of all meshes parallel to a mesh of quads, the one whose points `handles` are nearest to `targets` by the
-/// sum of squares; among equally near ones that nearest to the mesh itself. The mesh is as for
-/// `shapeop_canalParallelSpace`.
+/// sum of squares; among equally near ones that nearest to the mesh itself. Every point is in a face. Of a mesh of more
+/// than 1000 points all points are targets of their own, a millionth as heavy as the handles, and edges are parallel to
+/// 1e-12 or as near as 100 rounds bring them: `shapeop_canalCheckParallel` tells.
 ///
 /// # Safety
 /// `points` is null or readable, `out` null or writable, for `3 * nb_points` doubles; `quads` is null or readable for
@@ -270,7 +271,13 @@ pub unsafe extern "C" fn shapeop_canalNearestParallel(
             let index = |(i, &index): (usize, &c_int)| io::index(&format!("handles[{i}]"), index, mesh.points.len());
             let indices = indices.iter().enumerate().map(index).collect::<Result<Vec<_>>>()?;
             let handles: Vec<_> = indices.into_iter().zip(targets).collect();
-            outputs.must("out", out, io::coordinates(&ParallelMeshes::of(&mesh)?.nearest(&handles)?))?;
+            // The space of all parallel meshes takes too long to compute for large ones.
+            let nearest = if mesh.points.len() <= parallel::MOST_POINTS {
+                ParallelMeshes::of(&mesh)?.nearest(&handles)?
+            } else {
+                nearest_parallel(&mesh, &handles)?
+            };
+            outputs.must("out", out, io::coordinates(&nearest))?;
         }
         outputs.write()
     }))
@@ -334,7 +341,7 @@ pub unsafe extern "C" fn shapeop_canalFrameOfAngles(lambda: f64, theta: f64, psi
     }))
 }
 
-fn direction(number: c_int) -> Result<Direction> {
+pub(super) fn direction(number: c_int) -> Result<Direction> {
     match number {
         1 => Ok(Direction::One),
         2 => Ok(Direction::Two),

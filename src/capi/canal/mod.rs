@@ -4,21 +4,25 @@ mod families;
 mod grids;
 mod inversion;
 mod io;
+mod kinks;
 mod parts;
 mod revolution;
 mod smoothing;
 mod strips;
 mod surface;
+mod touching_spheres;
 mod two_curves;
 
 pub use families::*;
 pub use grids::*;
 pub use inversion::*;
+pub use kinks::*;
 pub use parts::*;
 pub use revolution::*;
 pub use smoothing::*;
 pub use strips::*;
 pub use surface::*;
+pub use touching_spheres::*;
 pub use two_curves::*;
 
 use super::handles::{self, Handle, Object};

@@ -52,7 +52,7 @@ const KINDS: [(shapeop_canal_kind, BaseKind); 4] = [
     (shapeop_canal_kind::SO_CANAL_KIND_CIRCULAR, BaseKind::Circular),
 ];
 
-fn kind(number: c_int) -> Result<BaseKind> {
+pub(super) fn kind(number: c_int) -> Result<BaseKind> {
     let found = KINDS.iter().find(|(own, _)| *own as c_int == number);
     found.map(|(_, kind)| *kind).ok_or_else(|| {
         let reason = format!("expected a shapeop_canal_kind, 0 to {}, found {number}", KINDS.len() - 1);

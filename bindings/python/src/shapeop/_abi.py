@@ -484,6 +484,32 @@ FUNCTIONS = {
             POINTER(c_double),
         ],
     ),
+    "shapeop_canalCreateWithKinks": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_int,
+            c_int,
+            POINTER(c_int),
+            POINTER(c_double),
+            c_int,
+        ],
+    ),
+    "shapeop_canalKinks": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(c_int),
+            POINTER(c_int),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
     "shapeop_canalCheckCircular": (
         c_int,
         [
@@ -807,7 +833,6 @@ FUNCTIONS = {
             POINTER(c_int),
         ],
     ),
-    "shapeop_canalDefaultFitOptions": (c_int, [POINTER(shapeop_canal_fit_options)]),
     "shapeop_canalCurvePoints": (
         c_int,
         [
@@ -850,6 +875,7 @@ FUNCTIONS = {
         ],
     ),
     "shapeop_canalCharacteristicCircles": (c_int, [POINTER(c_double), c_int, POINTER(c_double)]),
+    "shapeop_canalDefaultFitOptions": (c_int, [POINTER(shapeop_canal_fit_options)]),
     "shapeop_canalFit": (
         c_void_p,
         [

@@ -45,6 +45,18 @@ def grid_lengths(grid: Any, wraps: Wraps = (False, False)) -> tuple[Any, Any]:
     return _arrays.doubles(column), _arrays.doubles(row)
 
 
+def polyline_lengths(grid: Any, column_points: Any, row_points: Any, wraps: Wraps = (False, False)) -> tuple[Any, Any]:
+    """The lengths for :func:`combescure` of two polylines, parallel to column 0 and row 0, that replace them.
+
+    They are below 0 where an edge points the other way. Along a direction that wraps a polyline ends where it starts.
+    """
+    own = _Grid(grid, wraps)
+    columns, rows = _arrays.points(column_points, "column_points"), _arrays.points(row_points, "row_points")
+    column, row = _doubles(own.spans[0]), _doubles(own.spans[1])
+    check(lib.shapeop_canalPolylineLengths(*own.arguments, *columns, *rows, column, row))
+    return _arrays.doubles(column), _arrays.doubles(row)
+
+
 def close_lengths(grid: Any, column: Any, row: Any, wraps: Wraps) -> tuple[Any, Any]:
     """The lengths nearest to the given ones with which a grid that wraps closes."""
     own, columns, rows = _Grid(grid, wraps), _arrays.numbers(column, "column"), _arrays.numbers(row, "row")
@@ -65,7 +77,7 @@ def combescure(
 
 
 def parallel_space(points: Any, quads: Any) -> Any:
-    """An orthonormal basis of all meshes parallel to a mesh of quads: (dimension, points, 3)."""
+    """An orthonormal basis of all meshes parallel to a mesh of quads, at most 1000 points: (dimension, points, 3)."""
     block, lists = _arrays.points(points), _arrays.face_lists(quads, "quads", 4)
     arguments, dimension = (*block, lists.indices.pointer, lists.list_count), ctypes.c_int()
     check(lib.shapeop_canalParallelSpace(*arguments, None, 0, ctypes.byref(dimension)))
@@ -75,7 +87,11 @@ def parallel_space(points: Any, quads: Any) -> Any:
 
 
 def nearest_parallel(points: Any, quads: Any, handles: Any, targets: Any) -> Any:
-    """The parallel mesh whose points ``handles`` are nearest to ``targets``."""
+    """The parallel mesh whose points ``handles`` are nearest to ``targets``.
+
+    Of more than 1000 points all are targets of their own, a millionth as heavy as a handle: the more of them must move
+    far, the less exactly handles are met.
+    """
     block, lists = _arrays.points(points), _arrays.face_lists(quads, "quads", 4)
     indices, goals = _arrays.ids(handles, "handles"), _arrays.points(targets, "targets")
     if indices.length != goals.length:
@@ -164,6 +180,14 @@ def frame_of_tangent(tangent: Any, normal: Any, direction: int = 1) -> Any:
     out = _doubles(9)
     vectors = (_vector(tangent, "tangent"), _vector(normal, "normal"))
     check(lib.shapeop_canalFrameOfTangent(*vectors, _arrays.integer(direction, "direction"), out))
+    return _arrays.shaped(out, 3, 3)
+
+
+def frame_across(frame: Any, edge: Any, direction: int = 1) -> Any:
+    """The frame at the other end of an edge in direction 1 or 2 of a circular grid."""
+    out = _doubles(9)
+    arguments = (_frame(frame), _vector(edge, "edge"), _arrays.integer(direction, "direction"))
+    check(lib.shapeop_canalFrameAcross(*arguments, out))
     return _arrays.shaped(out, 3, 3)
 
 

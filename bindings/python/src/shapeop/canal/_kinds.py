@@ -117,6 +117,28 @@ class Closed(NamedTuple):
     is_flipped: list[bool]
 
 
+class ClosingCircle(NamedTuple):
+    """The circle that closes a strip, where the strip then starts, and the point across from the guide's last one."""
+
+    circle: Any
+    first: Any
+    last: Any
+    which_case: int
+    is_crossed: bool
+
+
+class Kinks(NamedTuple):
+    """Lines along which a surface is creased: rows if ``direction`` is 1, columns if it is 2.
+
+    ``lines``: their indices, neither 0 nor beyond the last. ``angles``: by how much the frames from there on are
+    turned about each, in radians.
+    """
+
+    direction: int
+    lines: Any
+    angles: Any
+
+
 class NodeAxes(NamedTuple):
     """Axes of nodes, (rows, columns, 3), and the gaps of beams of height 1, (rows, columns)."""
 

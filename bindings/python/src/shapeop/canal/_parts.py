@@ -29,6 +29,18 @@ def node_axes(
     return NodeAxes(own.shaped(axes), _arrays.shaped(gaps, own.rows, own.columns), bool(cancelled.value))
 
 
+def node_gaps(grid: Any, axes: Any, height: float = 1.0, wraps: Wraps = (False, False)) -> tuple[Any, Any]:
+    """What given axes make of beams, (rows, columns) each.
+
+    The gaps: for beams of height 1, the difference of the depths along an axis down to which they reach. The depths:
+    how far the deepest beam of ``height`` reaches.
+    """
+    own = _Grid(grid, wraps)
+    gaps, depths = _doubles(own.count), _doubles(own.count)
+    check(lib.shapeop_canalNodeGaps(*own.arguments, own.axes(axes), _arrays.real(height, "height"), gaps, depths))
+    return _arrays.shaped(gaps, own.rows, own.columns), _arrays.shaped(depths, own.rows, own.columns)
+
+
 def offset(grid: Any, axes: Any, distance: float, wraps: Wraps = (False, False)) -> Any:
     """A grid moved by ``distance`` along its axes."""
     own = _Grid(grid, wraps)

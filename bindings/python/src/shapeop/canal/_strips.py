@@ -8,7 +8,7 @@ from typing import Any, Optional
 from .. import _abi, _arrays
 from .._library import ArgumentError, check, lib
 from ._arguments import _circles, _doubles, _frame, _ints, _of_length, _optional, _truths, _vector, _Watch
-from ._kinds import Closed, Holonomy, ProgressFunction, Smoothed, Stop, Strip
+from ._kinds import Closed, ClosingCircle, Holonomy, ProgressFunction, Smoothed, Stop, Strip
 
 
 def _strip(function: Any, points: Any, start: Any, *arguments: Any, is_full: bool = False) -> Strip:
@@ -136,6 +136,21 @@ def holonomy(points: Any) -> Holonomy:
     columns = list(matrix)
     rows = (ctypes.c_double * 9)(*(columns[3 * j + i] for i in range(3) for j in range(3)))
     return Holonomy(_arrays.shaped(rows, 3, 3), residual.value, bool(closes.value), _arrays.doubles(tangent))
+
+
+def close_circles(first_circle: Any, last_circle: Any, start: Any, guide_first: Any, guide_last: Any) -> ClosingCircle:
+    """The circle that closes a strip of circles.
+
+    ``first_circle`` goes through ``start`` and the guide's first point, ``last_circle`` through its last point. Where
+    both are on one sphere ``which_case`` is 1 and the strip starts at ``start``; else it is 2.
+    """
+    circle, first, last, case, crossed = _doubles(7), _doubles(3), _doubles(3), ctypes.c_int(), ctypes.c_int()
+    circles = (_of_length(first_circle, "first_circle", 7), _of_length(last_circle, "last_circle", 7))
+    points = (_vector(start, "start"), _vector(guide_first, "guide_first"), _vector(guide_last, "guide_last"))
+    outputs = (circle, first, last, ctypes.byref(case), ctypes.byref(crossed))
+    check(lib.shapeop_canalCloseCircles(*circles, *points, *outputs))
+    places = (_arrays.doubles(first), _arrays.doubles(last))
+    return ClosingCircle(_arrays.doubles(circle), *places, case.value, bool(crossed.value))
 
 
 def close_strip(guide: Any, border: Any, last: Any) -> Closed:

@@ -7,17 +7,25 @@ import weakref
 from typing import Any, Optional, Union
 
 from .. import _abi, _arrays
-from .._library import ClosedError, ErrorCode, check, check_message, lib, text
-from ._arguments import _doubles, _frame, _Grid, _optional, _vector
-from ._kinds import Center, Kind, Wraps
+from .._library import ArgumentError, ClosedError, ErrorCode, check, check_message, lib, text
+from ._arguments import _doubles, _frame, _Grid, _ints, _optional, _vector
+from ._kinds import Center, Kind, Kinks, Wraps
+
+
+def _m_moulding(curve: Any, rail: Any, p3: Any, center: Any, value: Any, point: Any, outputs: Any) -> Optional[int]:
+    curves = (*_arrays.points(curve, "curve"), *_arrays.points(rail, "rail"))
+    kind, number = _arrays.member(Center, center, "center"), _arrays.real(value, "value")
+    choice = (_optional(p3, "p3"), kind, number, _optional(point, "point"))
+    handle: Optional[int] = lib.shapeop_canalMMoulding(*curves, *choice, *outputs)
+    return handle
 
 
 class CanalSurface:
     """A circular net with a frame at each point, and the transformations that made it of its base.
 
     ``grid``: an array of shape (rows, columns, 3) whose quads have circles; ``frame``: the unit tangents ``(t1, t2)``
-    at its first point. It is deleted by :meth:`close`, at the end of a ``with`` block, or when nothing refers to it
-    any more.
+    at its first point; ``kinks``: the rows or columns along which it is creased. It is deleted by :meth:`close`, at the
+    end of a ``with`` block, or when nothing refers to it any more.
 
     >>> torus = CanalSurface.revolution([[2, 0, 0.5], [1.6, 0, 0.3], [1.6, 0, -0.3], [2, 0, -0.5]], columns=12)
     >>> torus.invert([0, 0, 3], 4)
@@ -26,10 +34,23 @@ class CanalSurface:
     """
 
     def __init__(
-        self, grid: Any, frame: Any, kind: Union[Kind, str] = Kind.CIRCULAR, wraps: Wraps = (False, False)
+        self,
+        grid: Any,
+        frame: Any,
+        kind: Union[Kind, str] = Kind.CIRCULAR,
+        wraps: Wraps = (False, False),
+        kinks: Optional[Kinks] = None,
     ) -> None:
-        number = _arrays.member(Kind, kind, "kind")
-        self._open(lib.shapeop_canalCreate(*_Grid(grid, wraps).arguments, _frame(frame), number))
+        arguments = (*_Grid(grid, wraps).arguments, _frame(frame), _arrays.member(Kind, kind, "kind"))
+        if kinks is None:
+            self._open(lib.shapeop_canalCreate(*arguments))
+            return
+        direction, lines, angles = _arrays.integer(kinks[0], "direction"), *kinks[1:]
+        indices, turns = _arrays.ids(lines, "lines"), _arrays.numbers(angles, "angles")
+        if turns.length != indices.length:
+            raise ArgumentError(f"angles: expected {indices.length}, one for each line; found {turns.length}")
+        creased = (direction, indices.pointer, turns.pointer, turns.length)
+        self._open(lib.shapeop_canalCreateWithKinks(*arguments, *creased))
 
     def _open(self, handle: Optional[int]) -> None:
         if handle is None:
@@ -67,13 +88,19 @@ class CanalSurface:
 
     @classmethod
     def moulding(cls, rail: Any, profile: Any) -> CanalSurface:
-        """The moulding surface of a planar rail and a profile in an orthogonal plane that starts on it."""
+        """The moulding surface of a planar rail and a profile in an orthogonal plane that starts on it.
+
+        What was found of it, :func:`moulding` tells too.
+        """
         rails, profiles = _arrays.points(rail, "rail"), _arrays.points(profile, "profile")
         return cls._of(lib.shapeop_canalMoulding(*rails, *profiles, None, None, None))
 
     @classmethod
     def monge(cls, rail: Any, profile: Any) -> CanalSurface:
-        """The Monge surface of a rail in space and a planar profile that starts on it and moves without twist."""
+        """The Monge surface of a rail in space and a planar profile that starts on it and moves without twist.
+
+        What was found of it, :func:`monge` tells too.
+        """
         rails, profiles = _arrays.points(rail, "rail"), _arrays.points(profile, "profile")
         return cls._of(lib.shapeop_canalMonge(*rails, *profiles, None, None, None))
 
@@ -155,21 +182,9 @@ class CanalSurface:
         """The M-moulding surface through a planar curve and a rail in space that starts on it.
 
         ``p3``: the far corner, on one circle with the first point and both ends; without it ``point`` is the center
-        of inversion.
+        of inversion. What was found of it, :func:`m_moulding` tells too.
         """
-        handle = lib.shapeop_canalMMoulding(
-            *_arrays.points(curve, "curve"),
-            *_arrays.points(rail, "rail"),
-            _optional(p3, "p3"),
-            _arrays.member(Center, center, "center"),
-            _arrays.real(value, "value"),
-            _optional(point, "point"),
-            None,
-            None,
-            None,
-            None,
-        )
-        return cls._of(handle)
+        return cls._of(_m_moulding(curve, rail, p3, center, value, point, (None, None, None, None)))
 
     # Ownership.
 
@@ -262,6 +277,16 @@ class CanalSurface:
         return Kind(lib.shapeop_canalKind(self._handle))
 
     @property
+    def kinks(self) -> Optional[Kinks]:
+        """The lines along which the base is creased; ``None`` without any."""
+        direction, count = ctypes.c_int(), ctypes.c_int()
+        check(lib.shapeop_canalKinks(self._handle, None, None, None, 0, ctypes.byref(count)))
+        lines, angles = _ints(count.value), _doubles(count.value)
+        outputs = (ctypes.byref(direction), lines, angles, count.value, ctypes.byref(count))
+        check(lib.shapeop_canalKinks(self._handle, *outputs))
+        return Kinks(direction.value, list(lines), _arrays.doubles(angles)) if direction.value else None
+
+    @property
     def chain_length(self) -> int:
         """The number of transformations."""
         return int(lib.shapeop_canalChainCount(self._handle))
@@ -282,6 +307,14 @@ class CanalSurface:
         pieces = (_arrays.integer(one, "one"), _arrays.integer(two, "two"))
         return self._of(lib.shapeop_canalRefined(self._handle, *pieces))
 
+    def refined_at(self, one: Any, two: Any) -> CanalSurface:
+        """As :meth:`refined`, with faces of the net itself cut at fractions of the arcs of column 0 and row 0.
+
+        They ascend between 0 and 1.
+        """
+        a, b = _arrays.numbers(one, "one"), _arrays.numbers(two, "two")
+        return self._of(lib.shapeop_canalRefinedAt(self._handle, *a, *b))
+
     @property
     def closing_gap(self) -> float:
         """How far frames come back from themselves across seams: 0 where the surface is smooth there."""
@@ -294,6 +327,19 @@ class CanalSurface:
         """How near forces along lines of curvature come to equilibrium under pressure: 0 in equilibrium, to 1."""
         residual = ctypes.c_double()
         check(lib.shapeop_canalMembraneResidual(self._handle, ctypes.byref(residual)))
+        return residual.value
+
+    def membrane_residual_of(self, pressure: float, forces_one: Any, forces_two: Any) -> float:
+        """As :attr:`membrane_residual`, for given forces per length: one per face in both directions.
+
+        They are above 0 for tension under ``pressure`` along the normal.
+        """
+        one, two = _arrays.numbers(forces_one, "forces_one"), _arrays.numbers(forces_two, "forces_two")
+        if one.length != two.length:
+            raise ArgumentError(f"forces_two: expected {one.length} numbers, found {two.length}")
+        residual, forces = ctypes.c_double(), (one.pointer, two.pointer, one.length)
+        load = _arrays.real(pressure, "pressure")
+        check(lib.shapeop_canalMembraneResidualOf(self._handle, load, *forces, ctypes.byref(residual)))
         return residual.value
 
     def properties(self) -> dict[str, Union[int, float]]:
