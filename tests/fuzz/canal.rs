@@ -36,7 +36,7 @@ enum Call {
     InvertPoints(Vec<f64>, [f64; 3], f64),
 }
 
-fn number() -> impl Strategy<Value = f64> {
+pub(super) fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         12 => -2.0..2.0_f64,
         2 => prop_oneof![Just(0.0), Just(1.0), Just(-1.0)],
