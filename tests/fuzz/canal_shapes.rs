@@ -119,7 +119,7 @@ impl Case {
     }
 
     fn flag(&self, which: usize) -> bool {
-        self.choices[which] % 4 == 0
+        self.choices[which].is_multiple_of(4)
     }
 
     fn vector(&self, from: usize) -> DVec3 {
@@ -243,7 +243,8 @@ fn c_canal_surfaces(case: &Case) -> Checked<bool> {
     let section = (0..5).map(|j| 0.4 * f64::from(j)).map(|t| DVec3::new(1.0 - t.cos(), 0.0, t.sin())).collect();
     let lengths: Vec<DVec3> = (0..6).map(|k| DVec3::splat(1.0 - 0.01 * f64::from(k))).collect();
     let [guide, section, far, lengths] = case.spoilt([guide, section, wave(7, 1.2, 0.5), lengths]);
-    let mut on = |_: f64| if case.choices[1] % 8 == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let mut on =
+        |_: f64| if case.choices[1].is_multiple_of(8) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let arguments = ["guide", "section", "lengths", "curve"];
     let used = |made: &CCanal| made.surface.to_json().is_empty() || made.residual().is_nan();
     let mut look = |target: Target<'_>| -> Checked<bool> {
@@ -264,10 +265,10 @@ fn c_canal_surfaces(case: &Case) -> Checked<bool> {
     let chord = section.first().zip(section.last()).map_or(1.0, |(first, last)| first.distance(*last));
     let lengths: Vec<f64> = lengths.iter().map(|length| length.x * chord).collect();
     let mut is_made = look(Target::Lengths(&lengths))?;
-    if let Ok(curve) = Spline::through(&far, case.flag(3)) {
-        if let Some(nearest) = checked("nearest", NearestOnCurve::new(&curve), &["curve"])? {
-            is_made |= look(Target::Curve(&nearest))?;
-        }
+    if let Ok(curve) = Spline::through(&far, case.flag(3))
+        && let Some(nearest) = checked("nearest", NearestOnCurve::new(&curve), &["curve"])?
+    {
+        is_made |= look(Target::Curve(&nearest))?;
     }
     Ok(is_made)
 }
@@ -290,8 +291,9 @@ fn smoothing_of_strips(case: &Case) -> Checked<bool> {
     checked("energy", smoothing::energy(&strip, &frame), &["strip", "frame"])?;
     let parameters: Vec<f64> = parameters.iter().map(|parameter| parameter.x).collect();
     let default = smoothing::Options::default();
-    let asked =
-        |which: usize, from: usize, value: f64| if case.choices[which] % 3 == 0 { case.numbers[from] } else { value };
+    let asked = |which: usize, from: usize, value: f64| {
+        if case.choices[which].is_multiple_of(3) { case.numbers[from] } else { value }
+    };
     let options = smoothing::Options {
         cone: case.flag(0).then(|| Cone { axis: case.vector(0), angle_rad: case.numbers[3] }),
         turns_tangents: case.flag(1),
@@ -305,7 +307,7 @@ fn smoothing_of_strips(case: &Case) -> Checked<bool> {
     };
     // The curve of the spoilt points, or the good one: one of a caller's own may be as bad as its points.
     let own = if case.flag(5) { None } else { Spline::through(&guide, false).ok() };
-    let shift = if case.choices[4] % 9 == 0 { case.numbers[0] } else { 0.0 };
+    let shift = if case.choices[4].is_multiple_of(9) { case.numbers[0] } else { 0.0 };
     let at = |parameter: f64| own.as_ref().unwrap_or(&curve).point(parameter) + shift;
     let input = Input { curve: &at, parameters: &parameters, strip: &strip, frame };
     let mut on = |_: &shapeop::linalg::bfgs::Progress| ControlFlow::Continue(());
@@ -361,7 +363,7 @@ fn parts(case: &Case) -> Checked<bool> {
     let found = [
         checked("given axes", NodeAxes::of(&grid, &axes), &arguments)?,
         checked("axes handed on", NodeAxes::handed_on(&grid, case.vector(3)), &arguments)?,
-        if case.choices[3] % 8 == 0 { checked("least gaps", search(), &arguments)? } else { None },
+        if case.choices[3].is_multiple_of(8) { checked("least gaps", search(), &arguments)? } else { None },
     ];
     for axes in found.into_iter().flatten() {
         checked("depths", axes.depths(&grid, height), &arguments)?;
