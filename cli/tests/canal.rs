@@ -27,6 +27,9 @@ fn assert_circular(mesh: &Mesh) {
     }
 }
 
+/// The sphere of the curve in `dome.csv`.
+const DOME: &str = "0,0,-0.75,1.25";
+
 fn surface_of(folder: &Folder, stem: &str) -> SuperCanal {
     let text = std::fs::read_to_string(folder.path(&format!("{stem}.surface.json"))).unwrap();
     SuperCanal::from_json(&text).unwrap()
@@ -51,11 +54,13 @@ fn every_command_writes_a_circular_mesh_its_surface_a_picture_and_a_true_report(
         (&["moulding", "rail.csv", "section.csv"], "moulding", [17, 10]),
         (&["monge", "helix.csv", "arch_on_helix.csv"], "circular net", [25, 13]),
         (&["m-revolution", "bean.obj", "--p2", p2, "--p3", p3, "--columns", "9"], "M-revolution", [23, 9]),
+        (&["m-revolution", "dome.csv", "--p2", p2, "--p3", p3, "--sphere", DOME], "M-revolution", [23, 13]),
         (&["m-moulding", "bean.obj", "arch.csv", "--center", "0,-3"], "M-circular net", [23, 13]),
         (&["m-moulding", "bean.obj", "arch.csv", "--p3", p3], "M-moulding", [23, 13]),
         (&["strip", "arc.csv", "--start", "3.5,0", "--lengths", "1.5"], "canal", [13, 2]),
         (&["strip", "arc.csv", "--start", "3.5,0", "--radii", "0.9"], "canal", [13, 2]),
         (&["strip", "arc.csv", "--start", "3.5,0", "--border-length", "6", "--points", "9"], "canal", [9, 2]),
+        (&["strip", "arc.csv", "--start", "3.5,0", "--border-edges", "0.6"], "canal", [13, 2]),
         (&["strip", "arc.csv", "--start", "3.5,0", "--lengths", "1.5", "--smooth"], "canal", [13, 2]),
         (&["circles", "circles.csv"], "canal", [9, 2]),
         (&["facade", "ring.json", "--start", "2.4,0", "--lengths", "0.9"], "canal", [15, 2]),
@@ -74,7 +79,8 @@ fn every_command_writes_a_circular_mesh_its_surface_a_picture_and_a_true_report(
         let text = said(&shapeop_into(&folder, &whole));
         assert!(text.contains("planarity, worst") && !text.contains("warning"), "{arguments:?}\n{text}");
         let name = arguments[1].split('.').next().unwrap();
-        let stem = format!("{name}.{}", arguments[0]);
+        let smooth = if arguments.contains(&"--smooth") { ".smooth" } else { "" };
+        let stem = format!("{name}.{}{smooth}", arguments[0]);
         assert_eq!(folder.files(), [".json", ".obj", ".png", ".surface.json"].map(|ending| format!("{stem}{ending}")));
         assert!(png_size(&folder.path(&format!("{stem}.png"))).0 >= 1280);
         let (mesh, surface) = (mesh_of(&folder, &stem), surface_of(&folder, &stem));
@@ -102,6 +108,32 @@ fn every_command_writes_a_circular_mesh_its_surface_a_picture_and_a_true_report(
         }
         assert!(report["measures"]["concyclicity"]["max"].as_f64().unwrap() < 1e-9);
         assert_eq!(report["files"].as_object().unwrap().len(), 4);
+    }
+}
+
+#[test]
+fn arches_over_a_sphere_leave_it_at_right_angles() {
+    let folder = Folder::new("canal-dome");
+    let (dome, center) = (curve("dome.csv"), DVec3::new(0.0, 0.0, -0.75));
+    let points = [DVec3::new(-0.6, -0.8, 0.0), DVec3::new(0.6, -0.8, 0.0)];
+    let roof = |more: &[&str]| {
+        let given = ["m-revolution", &dome, "--p2", "-0.6,-0.8", "--p3", "0.6,-0.8", "--sphere", DOME];
+        said(&shapeop_into(&folder, &[&["canal"], &given[..], more, &["--picture", "none"]].concat()));
+        surface_of(&folder, "dome.m-revolution").net().grid().clone()
+    };
+    for (more, is_outside) in [(&[][..], true), (&["--inside"][..], false)] {
+        let grid = roof(more);
+        assert!(grid.at(0, 12).distance(points[0]) < 1e-12 && grid.at(22, 12).distance(points[1]) < 1e-12);
+        for i in 0..23 {
+            let (foot, middle, end) = (grid.at(i, 0), grid.at(i, 6), grid.at(i, 12));
+            assert!((end.distance(center) - 1.25).abs() < 1e-12 && (middle.distance(center) > 1.25) == is_outside);
+            // The arch's tangent, by its circle, is along the sphere's radius.
+            let circle = shapeop::geometry::circle::Circle::through(foot, middle, end).unwrap();
+            assert!(circle.tangent_at(foot).cross((foot - center).normalize()).length() < 1e-10, "{i}");
+        }
+        let again = roof(&[more, &["--pole", "0.75,0,-1.75", "--omega", "30"]].concat());
+        let apart = grid.points().iter().zip(again.points()).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        assert!(apart < 1e-9, "{apart}");
     }
 }
 
@@ -143,10 +175,58 @@ fn strips_have_the_lengths_and_circles_asked_for() {
     strip(&["--lengths", "1.5", "--refine", "1", "2"]);
     let top = mesh_of(&folder, "arc.strip").points.iter().map(|point| point.z).fold(0.0, f64::max);
     assert!((top - 0.75).abs() < 1e-9, "{top}");
-    strip(&["--lengths", "1.5", "--smooth"]);
-    let report = read_json(&folder.path("arc.strip.json"));
-    let value = |when: &str| report["found"][format!("sum_of_squared_curvatures_{when}")].as_f64().unwrap();
-    assert!(value("after") < 0.9 * value("before"));
+    let grid = strip(&["--border-edges", "0.6"]);
+    assert!((0..12).all(|i| (grid.at(i, 1).distance(grid.at(i + 1, 1)) - 0.6).abs() < 1e-12));
+    let edges: Vec<String> = (0..12).map(|k| format!("{}", 0.5 + 0.02 * f64::from(k))).collect();
+    let grid = strip(&["--border-edges", &edges.join(",")]);
+    assert!((grid.at(11, 1).distance(grid.at(12, 1)) - 0.72).abs() < 1e-12);
+}
+
+#[test]
+fn smoothed_strips_keep_their_bounds_and_lie_beside_the_strip_as_it_was() {
+    let folder = Folder::new("canal-smooth");
+    let arc = curve("arc.csv");
+    let strip = |more: &[&str]| {
+        let given = ["strip", &arc, "--start", "3.5,0", "--lengths", "1.5", "--picture", "none"];
+        said(&shapeop_into(&folder, &[&["canal"], &given[..], more].concat()))
+    };
+    strip(&[]);
+    let before = (mesh_of(&folder, "arc.strip"), surface_of(&folder, "arc.strip"));
+    let first = before.1.base().frames()[0];
+    let smoothed = |more: &[&str]| {
+        let text = strip(&[&["--smooth"], more].concat());
+        assert!(text.contains("arc.strip.smooth.obj") && !text.contains("arc.strip.obj"), "{text}");
+        let found = read_json(&folder.path("arc.strip.smooth.json"))["found"].clone();
+        let value = |when: &str| found[format!("sum_of_squared_curvatures_{when}")].as_f64().unwrap();
+        assert!(value("after") < value("before"), "{found}");
+        let numbers = |name: &str| -> Vec<f64> {
+            found[name].as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+        };
+        let surface = surface_of(&folder, "arc.strip.smooth");
+        (surface.base().frames()[0].normal, numbers("lengths"), numbers("parameters"))
+    };
+    let (_, lengths, free) = smoothed(&[]);
+    assert!(lengths.iter().all(|length| (length / 1.5 - 1.0).abs() <= 0.25 + 1e-9));
+    assert!(lengths.iter().any(|length| (length / 1.5 - 1.0).abs() > 0.05));
+    let (_, lengths, parameters) = smoothed(&["--spacing-ratio", "1", "--length-change", "0.02"]);
+    assert!(lengths.iter().all(|length| (length / 1.5 - 1.0).abs() <= 0.02 + 1e-9));
+    // The knots of the curve, at which its points are: they stay, and without the bound they do not.
+    let guide = before.1.net().grid().column(0);
+    let chords: Vec<f64> = guide.windows(2).map(|pair| pair[0].distance(pair[1])).collect();
+    let moved = |parameters: &[f64]| {
+        let steps = parameters.windows(2).map(|pair| pair[1] - pair[0]);
+        steps.zip(&chords).map(|(step, chord)| (step / chord - 1.0).abs()).fold(0.0, f64::max)
+    };
+    assert!(moved(&parameters) < 1e-9 && moved(&free) > 1e-2, "{} {}", moved(&parameters), moved(&free));
+    let (normal, ..) = smoothed(&["--cone", "0,0,2", "--cone-angle", "40"]);
+    assert!((normal.angle_between(DVec3::Z).to_degrees() - 40.0).abs() < 1e-9);
+    let (normal, ..) = smoothed(&["--cone", "1,2,3"]);
+    let axis = DVec3::new(1.0, 2.0, 3.0);
+    assert!((normal.angle_between(axis) - first.normal.angle_between(axis)).abs() < 1e-9);
+    assert_eq!((mesh_of(&folder, "arc.strip"), surface_of(&folder, "arc.strip")), before);
+    let surface = folder.path("arc.strip.smooth.surface.json").display().to_string();
+    said(&shapeop_into(&folder, &["canal", "refine", &surface, "--picture", "none"]));
+    assert!(folder.path("arc.strip.smooth.refine.obj").exists());
 }
 
 #[test]
@@ -425,7 +505,13 @@ fn what_is_wrong_is_named_with_its_file_and_line() {
     let apart = folder.write("apart.csv", "0,0,1\n5,0,1\n");
     let surface = folder.write("bad.json", "{\"version\": 1,\n\"base\": \"cone\"}");
     let skew = folder.write("skew.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0.3\nv 0 1 0\nf 1 2 3 4\n");
-    let arc = curve("arc.csv");
+    let (arc, dome) = (curve("arc.csv"), curve("dome.csv"));
+    let rough = ["strip", &arc, "--start", "3.5,0", "--lengths", "1.5", "--smooth"];
+    let ratio = [&rough[..], &["--spacing-ratio", "0.5"]].concat();
+    let cone = [&rough[..], &["--cone", "0,0,0"]].concat();
+    let roof = ["m-revolution", &dome, "--p2", "-0.6,-0.8", "--p3", "0.6,-0.8", "--sphere"];
+    let (off, empty) = ([&roof[..], &["0,0,-0.75,1.2"]].concat(), [&roof[..], &["0,0,-0.75,0"]].concat());
+    let pole = [&roof[..], &[DOME, "--pole", "0,0,1"]].concat();
     let chain = folder.write("chain.json", "[{\"scaling\": 2},\n{\"scaling\": \"x\"}]");
     let zero = folder.write("zero.json", "[{\"scaling\": 0}]");
     let good = folder.write("good.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
@@ -450,6 +536,13 @@ fn what_is_wrong_is_named_with_its_file_and_line() {
             &["strip", &arc, "--start", "3.5,0", "--lengths", "lengths"],
             "lengths: expected numbers separated by commas, or a file",
         ),
+        (&["strip", &arc, "--start", "3.5,0", "--border-edges", "0.5,9"], "border-edges: expected 12, found 2"),
+        (&["strip", &arc, "--start", "3.5,0", "--border-edges", "9"], "border-edges[0]: a border edge of 9 is not"),
+        (&ratio, "spacing-ratio: expected 1 or more, found 0.5"),
+        (&cone, "cone: expected"),
+        (&off, "dome.csv: curve[0]: expected a point of the sphere, found one"),
+        (&empty, "sphere: expected a radius above 0, found 0"),
+        (&pole, "pole: expected a point of the sphere, found one"),
         (&["facade", &arc, "--start", "3.5,0", "--lengths", "1"], "arc.csv: expected a closed curve"),
         (&["transform", &surface, "--scale", "2"], "bad.json: base: unknown variant `cone`"),
         (&["transform", &skew, "--scale", "2"], "skew.obj: "),
@@ -471,6 +564,9 @@ fn what_is_wrong_is_named_with_its_file_and_line() {
         (vec!["strip", &arc, "--start", "3.5", "--lengths", "1"], "expected x,y or x,y,z, found 1 numbers"),
         (vec!["strip", &arc, "--start", "3.5,0"], "--lengths"),
         (vec!["strip", &arc, "--start", "3.5,0", "--lengths", "1", "--radii", "1"], "cannot be used with"),
+        (vec!["strip", &arc, "--start", "3.5,0", "--lengths", "1", "--cone", "0,0,1"], "--smooth"),
+        (vec!["m-revolution", &arc, "--p2", "0,0", "--p3", "1,0", "--inside"], "--sphere"),
+        (vec!["m-revolution", &arc, "--p2", "0,0", "--p3", "1,0", "--sphere", "0,0,1"], "expected 4 numbers, found 3"),
         (vec!["transform", &good, "--rotate", "1,0,0"], "expected 4 numbers, found 3"),
     ] {
         let stderr = refused(&shapeop(&[&["canal"], &arguments[..]].concat()), 2);
@@ -584,9 +680,9 @@ fn ctrl_c_stops_smoothing_and_writes_what_was_reached() {
     std::thread::sleep(Duration::from_millis(400));
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     assert_eq!(child.wait().unwrap().code(), Some(130));
-    let report = read_json(&out.join("arc.strip.json"));
+    let report = read_json(&out.join("arc.strip.smooth.json"));
     assert_eq!(report["found"]["smoothing_stopped"], "stopped with Ctrl-C");
-    let mesh = file::read(out.join("arc.strip.obj")).unwrap();
+    let mesh = file::read(out.join("arc.strip.smooth.obj")).unwrap();
     assert_eq!(mesh.points.len(), 1500 * 3);
     assert_circular(&mesh);
 }

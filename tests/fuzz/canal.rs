@@ -34,9 +34,13 @@ enum Call {
     Holonomy(Vec<f64>),
     Folds(Vec<f64>, c_int, c_int),
     InvertPoints(Vec<f64>, [f64; 3], f64),
+    Fit(Vec<f64>, Vec<f64>, f64, c_int),
+    CCanal(Vec<f64>, Vec<f64>, f64, c_int),
+    Smooth(Vec<f64>, Vec<f64>, [f64; 6]),
+    Parts(u32, Vec<f64>, Vec<f64>, f64, c_int),
 }
 
-fn number() -> impl Strategy<Value = f64> {
+pub(super) fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         12 => -2.0..2.0_f64,
         2 => prop_oneof![Just(0.0), Just(1.0), Just(-1.0)],
@@ -79,6 +83,11 @@ fn call() -> impl Strategy<Value = Call> {
         numbers(24).prop_map(Call::Holonomy),
         (proptest::collection::vec(number(), 48), 0..5_i32, 0..5_i32).prop_map(|(p, r, c)| Call::Folds(p, r, c)),
         (numbers(12), vector(), number()).prop_map(|(p, center, ratio)| Call::InvertPoints(p, center, ratio)),
+        (numbers(15), numbers(15), number(), integer()).prop_map(|(a, b, angle, n)| Call::Fit(a, b, angle, n)),
+        (numbers(12), numbers(12), number(), 0..3_i32).prop_map(|(a, b, l, flag)| Call::CCanal(a, b, l, flag)),
+        (numbers(12), numbers(12), [(); 6].map(|()| number())).prop_map(|(a, b, frame)| Call::Smooth(a, b, frame)),
+        (0..4_u32, [(); 2].map(|()| proptest::collection::vec(number(), 12)), number(), 0..4_i32)
+            .prop_map(|(which, [points, axes], height, wraps)| Call::Parts(which, points, axes, height, wraps)),
     ]
 }
 
@@ -161,6 +170,69 @@ fn make(surface: *mut ShapeOpCanal, call: &Call) -> (bool, Vec<f64>) {
                 let flags = ptr::null_mut();
                 let code = shapeop_canalFolds(points.as_ptr(), *rows, *columns, 0, out, flags, out.add(8), flags);
                 code == SO_SUCCESS
+            }
+            Call::Fit(guide, curve, angle, columns) => {
+                let mut options: shapeop_canal_fit_options = std::mem::zeroed();
+                options.struct_size = size_of::<shapeop_canal_fit_options>() as u32;
+                shapeop_canalDefaultFitOptions(&mut options);
+                (options.angle, options.column_count, options.circle_count) = (*angle, *columns % 1000, 3);
+                let (a, b) = (guide.len() as c_int / 3, curve.len() as c_int / 3);
+                let (guide, curve, flag) = (guide.as_ptr(), curve.as_ptr(), ptr::null_mut());
+                let report = ptr::null_mut();
+                let options = &raw const options;
+                made(shapeop_canalFit(
+                    guide, a, 0, curve, b, 0, options, out, 3, &mut count, none, flag, 0, flag, report,
+                ))
+            }
+            Call::CCanal(guide, section, length, projects) => {
+                let (a, b) = (guide.len() as c_int / 3, section.len() as c_int / 3);
+                let (lengths, flag) = (vec![*length; guide.len()], ptr::null_mut());
+                let (guide, section, lengths) = (guide.as_ptr(), section.as_ptr(), lengths.as_ptr());
+                let user = ptr::null_mut();
+                let surface = shapeop_canalCCanal(
+                    guide, a, section, b, lengths, none, 0, 0, *projects, None, user, out, none, none, flag, flag,
+                );
+                made(surface)
+            }
+            Call::Smooth(guide, border, frame) => {
+                let count = guide.len().min(border.len()) as c_int / 3;
+                // Nearly every other one is refused.
+                let frame = if frame[0] > 0.0 { [1.0, 0.0, 0.0, 0.0, 1.0, 0.0] } else { *frame };
+                let (guide, border, frame, user) = (guide.as_ptr(), border.as_ptr(), frame.as_ptr(), ptr::null_mut());
+                let (options, history, report) = (ptr::null(), ptr::null_mut(), ptr::null_mut());
+                let (to_guide, to_border) = (out, out.add(12));
+                let code = shapeop_canalSmooth(
+                    guide,
+                    border,
+                    count,
+                    frame,
+                    options,
+                    None,
+                    user,
+                    to_guide,
+                    to_border,
+                    none,
+                    none,
+                    history,
+                    0,
+                    user.cast(),
+                    report,
+                );
+                code == SO_SUCCESS
+            }
+            Call::Parts(which, points, axes, height, wraps) => {
+                let (points, axes, nodes) = (points.as_ptr(), axes.as_ptr(), ptr::null_mut());
+                match which {
+                    0 => {
+                        shapeop_canalBeams(points, 2, 2, *wraps, axes, *height, nodes, out, 4, &mut count) == SO_SUCCESS
+                    }
+                    1 => {
+                        shapeop_canalPanels(points, 2, 2, *wraps, axes, *height, out, out.add(32), none, none, none)
+                            == SO_SUCCESS
+                    }
+                    2 => shapeop_canalNodeAxes(points, 2, 2, *wraps, axes, out, out.add(12)) == SO_SUCCESS,
+                    _ => !shapeop_canalPartsText(points, 2, 2, *wraps, axes, *height, *height).is_null(),
+                }
             }
             Call::InvertPoints(points, center, ratio) => {
                 let count = points.len() as c_int / 3;

@@ -7,6 +7,7 @@
 
 mod calls;
 mod canal;
+mod canal_shapes;
 
 use std::ffi::{CString, c_int, c_void};
 use std::ptr;

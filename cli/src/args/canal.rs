@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 use glam::DVec3;
+use shapeop::geometry::canal::smoothing::Options;
 
-use super::links::{ChainArgs, parse_list, parse_vector};
+use super::links::{ChainArgs, parse_four, parse_list, parse_vector};
 use super::{MeshFormat, PictureFormat};
 
 #[derive(Debug, Args)]
@@ -52,13 +53,15 @@ Examples:
 
 As moulding, for rails in space. Beyond the evolute of the rail quads cross themselves: the report counts them.")]
     Monge(SweepArgs),
-    /// An inverted surface of revolution over a planar curve from P1 to P4 and two points P2, P3 on a circle with its ends
+    /// An inverted surface of revolution over a planar or spherical curve from P1 to P4 and two points P2, P3 on a circle with its ends
     #[command(after_help = "\
 Examples:
   shapeop canal m-revolution examples/canal/bean.obj --p2 -0.6,-0.8 --p3 0.6,-0.8
+  shapeop canal m-revolution examples/canal/dome.csv --p2 -0.6,-0.8 --p3 0.6,-0.8 --sphere 0,0,-0.75,1.25
 
-A roof whose arches are arcs of circles, each in a plane orthogonal to the curve's. What --omega, --ratio and --center choose is the \
-base, which further transformations start from; the surface itself is always the same.")]
+A roof whose arches are arcs of circles, each in a plane orthogonal to the curve's; with --sphere, over a curve on that sphere, which \
+they leave at right angles. What --omega, --ratio, --center and --pole choose is the base, which further transformations start from; \
+the surface itself is always the same.")]
     MRevolution(MRevolutionArgs),
     /// An inverted moulding or Monge surface through a planar curve and a rail that leaves its plane
     #[command(after_help = "\
@@ -68,16 +71,19 @@ Examples:
 
 Rail and curve start in the same point. With --p3, on a circle with the curve's ends and the rail's end, the far corner comes near it.")]
     MMoulding(MMouldingArgs),
-    /// A circular strip along a guide curve, from lengths of its crossing edges, radii, or the length of its border
+    /// A circular strip along a guide curve, from lengths of its crossing edges, radii, or lengths along its border
     #[command(after_help = "\
 Examples:
   shapeop canal strip examples/canal/arc.csv --start 3.5,0 --lengths 1.5
   shapeop canal strip examples/canal/arc.csv --start 3.5,0 --border-length 6 --rise 60
+  shapeop canal strip examples/canal/arc.csv --start 3.5,0 --border-edges 0.6
   shapeop canal strip examples/canal/arc.csv --start 3.5,0 --lengths 1.5 --smooth
+  shapeop canal strip examples/canal/arc.csv --start 3.5,0 --lengths 1.5 --smooth --cone 0,0,1 --cone-angle 60
 
-One of --lengths, --radii and --border-length is needed. Lengths can miss what is attainable: the refusal says which are; --project \
+One of --lengths, --radii, --border-edges and --border-length is needed. Lengths can miss what is attainable: the refusal says which are; --project \
 takes the nearest, --fit-start turns the first edge to where lengths can go on.
-The strip carries arcs across: --rise is the angle at which they leave it, 90: half circles.")]
+The strip carries arcs across: --rise is the angle at which they leave it, 90: half circles. --smooth names its files \
+NAME.strip.smooth.*, beside those of the strip as it was.")]
     Strip(StripArgs),
     /// The strip of circles that someone drew, and the roof over it
     #[command(after_help = "\
@@ -218,7 +224,7 @@ pub struct CenterArgs {
 
 #[derive(Debug, Args)]
 pub struct MRevolutionArgs {
-    /// The curve from P1 to P4, a planar curve file
+    /// The curve from P1 to P4, a curve file: planar, or on the sphere
     pub curve: PathBuf,
     /// P2, where the arch over P1 ends
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
@@ -228,14 +234,32 @@ pub struct MRevolutionArgs {
     pub p3: DVec3,
     /// A direction to whose side the arches rise
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", value_parser = parse_vector, allow_hyphen_values = true)]
+    #[arg(conflicts_with = "sphere")]
     pub up: DVec3,
     /// Points along each arch
     #[arg(long, value_name = "N", default_value_t = 13)]
     pub columns: usize,
     #[command(flatten)]
+    pub sphere: SphereArgs,
+    #[command(flatten)]
     pub center: CenterArgs,
     #[command(flatten)]
     pub output: CanalOutputArgs,
+}
+
+/// The sphere of a curve that is not planar.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Sphere")]
+pub struct SphereArgs {
+    /// Center and radius of the sphere that the curve, P2 and P3 are on
+    #[arg(long, value_name = "X,Y,Z,R", value_parser = parse_four, allow_hyphen_values = true)]
+    pub sphere: Option<(DVec3, f64)>,
+    /// The point of the sphere that flattens it to a plane, off the curve [default: one far from all points]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true, requires = "sphere")]
+    pub pole: Option<DVec3>,
+    /// Let arches rise into the sphere, not out of it
+    #[arg(long, requires = "sphere")]
+    pub inside: bool,
 }
 
 #[derive(Debug, Args)]
@@ -293,16 +317,36 @@ pub struct StripArgs {
     /// Turn the first crossing edge to where the lengths can go on
     #[arg(long)]
     pub fit_start: bool,
-    /// Move the points along the guide and change the lengths for smoother arcs
-    #[arg(long)]
-    pub smooth: bool,
-    /// Iterations of the smoothing at most
-    #[arg(long, value_name = "N", default_value_t = 200)]
-    pub iterations: usize,
+    #[command(flatten)]
+    pub smoothing: SmoothingArgs,
     #[command(flatten)]
     pub arcs: ArcArgs,
     #[command(flatten)]
     pub output: CanalOutputArgs,
+}
+
+/// Whether and how a strip is smoothed.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Smoothing")]
+pub struct SmoothingArgs {
+    /// Move the points along the guide, change the lengths and turn the normal for smoother arcs
+    #[arg(long)]
+    pub smooth: bool,
+    /// Iterations at most
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    pub iterations: usize,
+    /// The most that two spacings of points change against each other: 1 keeps them
+    #[arg(long, value_name = "RATIO", default_value_t = Options::default().spacing_ratio, allow_negative_numbers = true)]
+    pub spacing_ratio: f64,
+    /// The most that a length changes, as a part of it
+    #[arg(long, value_name = "PART", default_value_t = Options::default().length_change, allow_negative_numbers = true)]
+    pub length_change: f64,
+    /// Keep the normal at the first point at a constant angle to this axis
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true, requires = "smooth")]
+    pub cone: Option<DVec3>,
+    /// That angle in degrees, 0 to 180 [default: the normal's at the start]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, requires = "cone")]
+    pub cone_angle: Option<f64>,
 }
 
 /// What is prescribed of a strip.
@@ -316,6 +360,9 @@ pub struct MeasureArgs {
     /// Radii of the circles: one for all, or one for each quad; or a file of them
     #[arg(long, value_name = "R,...|FILE", value_parser = parse_numbers, allow_hyphen_values = true)]
     pub radii: Option<Numbers>,
+    /// Lengths of the border's edges: one for all, or one for each quad; or a file of them
+    #[arg(long, value_name = "E,...|FILE", value_parser = parse_numbers, allow_hyphen_values = true)]
+    pub border_edges: Option<Numbers>,
     /// Length of the border as a whole, spread like the guide's
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pub border_length: Option<f64>,

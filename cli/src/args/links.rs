@@ -107,7 +107,8 @@ pub fn parse_vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
-fn parse_four(text: &str) -> Result<(DVec3, f64), String> {
+/// Reads "x,y,z,w".
+pub fn parse_four(text: &str) -> Result<(DVec3, f64), String> {
     match parse_list(text)?[..] {
         [x, y, z, w] => Ok((DVec3::new(x, y, z), w)),
         ref values => Err(format!("expected 4 numbers, found {}", values.len())),

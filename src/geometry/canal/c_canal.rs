@@ -96,8 +96,8 @@ impl CCanal {
 /// Too few points, a number that is not finite, another number of lengths than of guide points, a length that is not above 0, a first
 /// length other than the section's, a section that does not start on the guide, or one that is not convex enough for any circle
 /// (`section[j]`). Status `NotPlanar`: the section; `Degenerate`: consecutive edges of the section are parallel, points coincide
-/// or are on a line; `NoSolution`: a length is not attainable, unless `is_projected`; the reason has the attainable
-/// interval. The place is `section[j]`, `guide[k]` or `lengths[k]`.
+/// or are on a line; `NotCircular`: round-off leaves no circular net; `NoSolution`: a length is not attainable, unless
+/// `is_projected`; the reason has the attainable interval. The place is `guide`, `section[j]`, `guide[k]` or `lengths[k]`.
 pub fn c_canal(
     guide: &[DVec3],
     section: &[DVec3],
@@ -145,13 +145,19 @@ pub fn c_canal(
         result.deviations[0] = curve.nearest(section[section.len() - 1]).distance;
     }
     let points = sections.iter().flat_map(|section| section.canal.iter().copied()).collect();
-    let grid = Grid::new(points, sections.len(), section.len(), [false; 2])?;
-    let mut surface = SuperCanal::new(Net::new(grid, frame)?, BaseKind::Canal);
+    // Where guide and section are of very different sizes, round-off leaves no circles.
+    let too_rough = |error: Error| {
+        let reason = format!("along it the section makes no circular net: {error}");
+        Error::new(error.status(), reason).at("guide")
+    };
+    let grid = Grid::new(points, sections.len(), section.len(), [false; 2]).map_err(too_rough)?;
+    let mut surface = SuperCanal::new(Net::new(grid, frame).map_err(too_rough)?, BaseKind::Canal);
     let row = (1..section.len()).map(|j| {
         let canal = &sections[0].canal;
         section[j].distance(section[j - 1]) / canal[j].distance(canal[j - 1])
     });
-    surface.push(Transform::Combescure { column: vec![1.0; sections.len() - 1], row: row.collect() })?;
+    let stretched = Transform::Combescure { column: vec![1.0; sections.len() - 1], row: row.collect() };
+    surface.push(stretched).map_err(too_rough)?;
     let Sections { lengths, deviations, attainable, projected, is_cancelled } = result;
     Ok(CCanal { surface, lengths, deviations, attainable, projected, is_cancelled })
 }

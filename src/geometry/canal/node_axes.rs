@@ -66,7 +66,7 @@ impl NodeAxes {
     /// and can cancel.
     ///
     /// # Errors
-    /// Status `NoSolution`: every first axis that was tried leads to one within [`LEAST_LEAN_RAD`] of a beam.
+    /// Status `NoSolution`: every first axis that was tried leads to one within [`LEAST_LEAN_RAD`] of a beam; the place is `points`.
     pub fn of_least_gaps(grid: &Grid, progress: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Self> {
         let mut best = ([0.0; 2], f64::INFINITY);
         let mut is_cancelled = false;
@@ -87,7 +87,7 @@ impl NodeAxes {
         }
         if best.1 == f64::INFINITY {
             let reason = "every first axis leads to one that nearly lies along a beam";
-            return Err(Error::new(Status::NoSolution, reason));
+            return Err(Error::new(Status::NoSolution, reason).at("points"));
         }
         // Spherical coordinates about the best direction itself, where they are regular.
         let center = direction(&best.0);
@@ -113,10 +113,15 @@ impl NodeAxes {
     /// For each point, the depth along its axis down to which the deepest beam of the given height reaches.
     ///
     /// # Errors
-    /// A height that is not finite.
+    /// A height that is not finite, or of which a depth is not.
     pub fn depths(&self, grid: &Grid, height: f64) -> Result<Vec<f64>> {
         finite("height", height)?;
-        Ok(Depths::new(grid, &self.axes).greatest.iter().map(|depth| height * depth).collect())
+        let depths: Vec<f64> = Depths::new(grid, &self.axes).greatest.iter().map(|depth| height * depth).collect();
+        if depths.iter().all(|depth| depth.is_finite()) {
+            return Ok(depths);
+        }
+        let reason = format!("expected one of which the depths are finite, found {height}");
+        Err(Error::new(Status::InvalidValue, reason).at("height"))
     }
 }
 

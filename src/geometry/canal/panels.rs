@@ -83,12 +83,17 @@ impl Panel {
     /// The outline of the panel's lower side, at `thickness` below the outline (away from the axes), cut along its mitres.
     ///
     /// # Errors
-    /// A thickness that is not finite.
+    /// A thickness that is not finite, or with which the outline is not.
     pub fn lower_outline(&self, thickness: f64) -> Result<[DVec2; 4]> {
         finite("thickness", thickness)?;
         // The cuts at a corner meet along its axis.
         let corner = |k: usize| self.outline[k] - thickness / self.axes[k].z * self.axes[k].truncate();
-        Ok(std::array::from_fn(corner))
+        let lower: [DVec2; 4] = std::array::from_fn(corner);
+        if lower.iter().all(|corner| corner.is_finite()) {
+            return Ok(lower);
+        }
+        let reason = format!("expected one for which the lower side is finite, found {thickness}");
+        Err(Error::new(Status::InvalidValue, reason).at("thickness"))
     }
 }
 
@@ -99,10 +104,11 @@ pub(super) fn check_axes(grid: &Grid, axes: &[DVec3]) -> Result<()> {
         return Err(Error::new(Status::InvalidArgumentLength, reason).at("axes"));
     }
     check_finite("axes", axes)?;
-    match axes.iter().position(|&axis| axis == DVec3::ZERO) {
+    // Lengths come from squares: below and beyond what can be squared an axis has no direction.
+    match axes.iter().position(|axis| !axis.length_squared().is_normal()) {
         None => Ok(()),
         Some(k) => {
-            let reason = "expected a vector other than zero";
+            let reason = format!("expected a vector other than zero, neither tiny nor huge; found {}", axes[k]);
             Err(Error::new(Status::InvalidValue, reason).at(format!("axes[{k}]")))
         }
     }
@@ -111,8 +117,8 @@ pub(super) fn check_axes(grid: &Grid, axes: &[DVec3]) -> Result<()> {
 /// The panels of a grid, in the order of its faces, with the axis at each of its points.
 ///
 /// # Errors
-/// Another number of axes than of points, an axis that is zero or not finite. Status `Degenerate`: an edge without a length, or an
-/// axis in the plane of a panel; the place is `faces[i]`.
+/// Another number of axes than of points, an axis that is zero, not finite, or so short or long that its square is. Status
+/// `Degenerate`: an edge without a length, or an axis in the plane of a panel; the place is `faces[i]`.
 pub fn panels(grid: &Grid, axes: &[DVec3]) -> Result<Vec<Panel>> {
     check_axes(grid, axes)?;
     let panel = |(i, quad): (usize, [usize; 4])| {

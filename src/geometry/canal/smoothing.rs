@@ -175,7 +175,8 @@ pub fn smooth(
         let reason = "the strip at the start is at the border of what is feasible";
         return Err(Error::new(Status::NoSolution, reason).at("strip"));
     }
-    let strip = strip::of_borders(at.points, at.states.iter().map(|state| state.border).collect())?;
+    let border = at.states.iter().map(|state| state.border).collect();
+    let strip = strip::of_borders(at.points, border).map_err(|error| error.with_place("strip"))?;
     let frame = net.orientation.frame(&at.angles).unwrap_or(input.frame);
     let after = at.states[at.states.len() - 1].energy;
     let history = found.history.iter().map(|value| value / squared).collect();

@@ -373,9 +373,10 @@ impl Objective for Net<'_> {
 /// `σ_k` of a strip.
 fn steps(points: &[DVec3], border: &[DVec3], extent: f64) -> Result<Vec<f64>> {
     let step = |k: usize| {
-        let quad = Quad::new(points[k], border[k], points[k + 1]).ok_or_else(|| on_a_line(k))?;
+        let place = || format!("strip: quad {k}");
+        let quad = Quad::new(points[k], border[k], points[k + 1]).ok_or_else(|| on_a_line(k).with_place(place()))?;
         let s = quad.place(border[k + 1]);
-        let refusal = |status, reason: String| Err(Error::new(status, reason).at(format!("strip: quad {k}")));
+        let refusal = |status, reason: String| Err(Error::new(status, reason).at(place()));
         let distance = quad.point(s).distance(border[k + 1]);
         if !(distance <= ON * extent) {
             return refusal(Status::NotCircular, format!("its corners are {distance:e} off a circle"));

@@ -88,7 +88,8 @@ pub fn figure5(folder: &Path) -> Result<Group> {
 pub fn figure7(folder: &Path) -> Result<Group> {
     let (parameters, strip, frame) = rough_strip(16)?;
     let input = Input { curve: &wave, parameters: &parameters, strip: &strip, frame };
-    let options = Options { max_iterations: 2000, ..Options::default() };
+    // Wider bounds lower F a little more, and crowd points together where the guide is straight.
+    let options = Options { max_iterations: 2000, spacing_ratio: 2.0, ..Options::default() };
     let found = smooth(&input, &options, &mut |_| ControlFlow::Continue(()))?;
     let fine = |strip: &Strip, frame: Frame| Ok::<_, anyhow::Error>(Net::new(strip.grid()?, frame)?.refined(4, 12)?);
     let (before, after) = (fine(&strip, frame)?, fine(&found.strip, found.frame)?);
@@ -102,6 +103,11 @@ pub fn figure7(folder: &Path) -> Result<Group> {
     group.plain("F before", found.before);
     group.at_most("F after over before", found.after / found.before, 0.5);
     group.plain("iterations", (found.history.len() - 1) as f64);
+    let spacings = |parameters: &[f64]| parameters.windows(2).map(|ends| ends[1] - ends[0]).collect::<Vec<f64>>();
+    let (now, then) = (spacings(&found.parameters), spacings(&parameters));
+    let factors: Vec<f64> = now.iter().zip(&then).map(|(now, then)| now / then).collect();
+    let [least, most] = [f64::min, f64::max].map(|of| factors.iter().copied().reduce(of).unwrap_or(f64::NAN));
+    group.at_most("spacings, changed against each other", most / least, options.spacing_ratio + 1e-9);
     let view = |title: &str, net: &Net, strip: &Strip, value: f64| {
         let view = View::new(title, -25.0, 42.0).grid(net.grid(), WHITE).line(&net.grid().column(0), ORANGE, 3.4);
         let view = view.line(&net.grid().column(net.grid().columns() - 1), BLUE, 2.0);

@@ -8,7 +8,9 @@ use shapeop::geometry::canal::m_moulding::{MouldingCenter, m_moulding as make_m_
 use shapeop::geometry::canal::m_revolution::m_revolution as make_m_revolution;
 use shapeop::geometry::canal::net::Net;
 use shapeop::geometry::canal::revolution_centers::Center;
+use shapeop::geometry::canal::spherical_guide::{GuideSphere, spherical_m_revolution};
 use shapeop::geometry::canal::surface::{BaseKind, SuperCanal};
+use shapeop::geometry::circle::Sphere;
 
 use super::made::{Made, write};
 use crate::Ending;
@@ -95,8 +97,17 @@ fn center(args: &CenterArgs) -> Center {
 
 pub fn m_revolution(args: &MRevolutionArgs, is_quiet: bool) -> Result<Ending> {
     let curve = Curve::read(&args.curve)?;
-    let found = make_m_revolution(&curve.points, args.p2, args.p3, center(&args.center), args.up, args.columns)
-        .map_err(|error| in_files(error, &[("curve", &curve), ("corners", &curve)]))?;
+    let MRevolutionArgs { p2, p3, columns, .. } = *args;
+    let center = center(&args.center);
+    let found = match args.sphere.sphere {
+        None => make_m_revolution(&curve.points, p2, p3, center, args.up, columns),
+        Some((middle, radius)) => {
+            let sphere = Sphere { center: middle, radius };
+            let guide = GuideSphere { sphere, pole: args.sphere.pole, is_outside: !args.sphere.inside };
+            spherical_m_revolution(&curve.points, p2, p3, &guide, center, columns)
+        }
+    };
+    let found = found.map_err(|error| in_files(error, &[("curve", &curve), ("corners", &curve)]))?;
     let mut made = Made::new(inverted(found.image, BaseKind::Revolution)?).curve("curve", &curve, true);
     made.find("omega_deg", found.omega.to_degrees());
     made.find("ratio", found.corners.ratio_at(found.omega));

@@ -9,7 +9,7 @@ use shapeop::geometry::canal::closing::{Case, closed_frame, closed_strip, holono
 use shapeop::geometry::canal::frame::Frame;
 use shapeop::geometry::canal::net::Net;
 use shapeop::geometry::canal::normals::{Guide, fitting_tangent};
-use shapeop::geometry::canal::smoothing::{self, Input};
+use shapeop::geometry::canal::smoothing::{self, Cone, Input};
 use shapeop::geometry::canal::strip::{self, Options, Strip};
 use shapeop::geometry::canal::strip_of_circles::from_circles;
 use shapeop::geometry::canal::surface::{BaseKind, SuperCanal};
@@ -20,7 +20,7 @@ use shapeop::mesh::curve::{Curve as _, Spacing, Spline, resample};
 
 use super::made::{Made, named, write};
 use crate::Ending;
-use crate::args::canal::{ArcArgs, CirclesArgs, FacadeArgs, MeasureArgs, Numbers, StripArgs};
+use crate::args::canal::{ArcArgs, CirclesArgs, FacadeArgs, MeasureArgs, Numbers, SmoothingArgs, StripArgs};
 use crate::curve_file::{Curve, read_circles, read_numbers};
 use crate::output::Output;
 use crate::progress::{Progress, catch_interrupts, is_interrupted};
@@ -47,13 +47,16 @@ pub fn strip(args: &StripArgs, is_quiet: bool) -> Result<Ending> {
     let mut frame = frame_of(&strip, &points, false, &args.arcs)?;
     let mut smoothed = None;
     let mut ending = Ending::Done;
-    if args.smooth {
-        Output::new(&args.output.out, &args.guide, "strip", args.output.picture)?;
+    let is_smoothed = args.smoothing.smooth;
+    // Both are wanted, side by side: the one does not overwrite the other.
+    let command = if is_smoothed { "strip.smooth" } else { "strip" };
+    if is_smoothed {
+        let options = smoothing_options(&args.smoothing, &frame);
+        Output::new(&args.output.out, &args.guide, command, args.output.picture)?;
         catch_interrupts();
-        let progress = Progress::new(u32::try_from(args.iterations).unwrap_or(u32::MAX), is_quiet);
+        let progress = Progress::new(u32::try_from(options.max_iterations).unwrap_or(u32::MAX), is_quiet);
         let curve = |parameter: f64| spline.point(parameter);
         let input = Input { curve: &curve, parameters: &parameters, strip: &strip, frame };
-        let options = smoothing::Options { max_iterations: args.iterations, ..smoothing::Options::default() };
         let found = smoothing::smooth(&input, &options, &mut |at| {
             progress.say(at.iteration, &format!("sum of squared curvatures {:.4e}", at.value));
             if is_interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -66,7 +69,7 @@ pub fn strip(args: &StripArgs, is_quiet: bool) -> Result<Ending> {
         (strip, frame) = (found.strip.clone(), found.frame);
         smoothed = Some(found);
     }
-    let mut made = of_strip(&strip, frame)?.curve("guide", &guide, args.points.is_none() && !args.smooth);
+    let mut made = of_strip(&strip, frame)?.curve("guide", &guide, args.points.is_none() && !is_smoothed);
     if let Some(found) = smoothed {
         made.find("sum_of_squared_curvatures_before", found.before);
         made.find("sum_of_squared_curvatures_after", found.after);
@@ -77,8 +80,21 @@ pub fn strip(args: &StripArgs, is_quiet: bool) -> Result<Ending> {
     if guide.is_closed {
         made.warn("the guide is closed, the strip is not: canal facade closes it");
     }
-    write("strip", &args.guide, made, &args.output, is_quiet)?;
+    write(command, &args.guide, made, &args.output, is_quiet)?;
     Ok(ending)
+}
+
+fn smoothing_options(args: &SmoothingArgs, frame: &Frame) -> smoothing::Options {
+    // An axis without a direction is refused later.
+    let at_start = |axis: DVec3| axis.try_normalize().map_or(0.0, |axis| frame.normal.angle_between(axis));
+    let angle = |axis| args.cone_angle.map_or_else(|| at_start(axis), f64::to_radians);
+    smoothing::Options {
+        cone: args.cone.map(|axis| Cone { axis, angle_rad: angle(axis) }),
+        spacing_ratio: args.spacing_ratio,
+        length_change: args.length_change,
+        max_iterations: args.iterations,
+        ..smoothing::Options::default()
+    }
 }
 
 fn stop_in_words(stop: Stop) -> &'static str {
@@ -170,14 +186,21 @@ fn measured(points: &[DVec3], start: DVec3, measure: &MeasureArgs, options: &Opt
         return Ok(strip::of_lengths(points, start, &lengths, options)?);
     }
     if let Some(radii) = &measure.radii {
-        let radii = match numbers(radii)?[..] {
-            [radius] => vec![radius; points.len().saturating_sub(1)],
-            ref list => list.to_vec(),
-        };
-        return Ok(strip::of_radii(points, start, &radii, options.is_strict)?);
+        return Ok(strip::of_radii(points, start, &for_quads(radii, points)?, options.is_strict)?);
     }
-    let length = measure.border_length.context("expected --lengths, --radii or --border-length")?;
+    if let Some(edges) = &measure.border_edges {
+        return Ok(strip::of_border_edges(points, start, &for_quads(edges, points)?)?);
+    }
+    let length = measure.border_length.context("expected --lengths, --radii, --border-edges or --border-length")?;
     Ok(strip::of_border_edges(points, start, &strip::edges_of_border(points, length)?)?)
+}
+
+/// Numbers for each quad along some points: one for all, or all.
+fn for_quads(given: &Numbers, points: &[DVec3]) -> Result<Vec<f64>> {
+    Ok(match numbers(given)?[..] {
+        [number] => vec![number; points.len().saturating_sub(1)],
+        ref list => list.to_vec(),
+    })
 }
 
 /// Lengths for each of some points: one for all, two for the first and the last, or all.
@@ -260,11 +283,27 @@ fn in_guide(error: shapeop::error::Error, guide: &Curve) -> anyhow::Error {
     anyhow!("{}: {error}", guide.name)
 }
 
-/// Puts the guide's file before a refusal that names its points.
+/// Arguments of strips and their smoothing that are options under other names.
+const OPTIONS: [(&str, &str); 5] = [
+    ("edges", "border-edges"),
+    ("spacing_ratio", "spacing-ratio"),
+    ("length_change", "length-change"),
+    ("cone.axis", "cone"),
+    ("cone.angle_rad", "cone-angle"),
+];
+
+/// Puts the guide's file before a refusal that names its points, and the option's name into one that names an option's value.
 fn in_strip(error: anyhow::Error, guide: &Curve) -> anyhow::Error {
-    match error.downcast::<shapeop::error::Error>() {
-        Ok(error) if error.place().starts_with("points") => in_guide(error, guide),
-        Ok(error) => error.into(),
-        Err(error) => error,
+    let error = match error.downcast::<shapeop::error::Error>() {
+        Ok(error) if error.place().starts_with("points") => return in_guide(error, guide),
+        Ok(error) => error,
+        Err(error) => return error,
+    };
+    let place = error.place().to_owned();
+    let option =
+        OPTIONS.iter().find_map(|(name, option)| place.strip_prefix(name).map(|rest| format!("{option}{rest}")));
+    match option {
+        Some(option) => error.with_place(option).into(),
+        None => error.into(),
     }
 }
