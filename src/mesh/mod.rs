@@ -11,16 +11,21 @@ pub mod grid;
 pub mod measure;
 mod obj;
 mod off;
+pub mod operators;
 pub mod patterns;
 mod ply;
 mod polylines;
+pub mod reference;
 mod topology;
+pub mod triangles;
 
 pub use closest::ClosestPoints;
 pub use file::Format;
 pub use grid::Grid;
 pub use polylines::polylines;
+pub use reference::ReferenceSurface;
 pub use topology::{BoundaryChain, Neighbours, Topology};
+pub use triangles::{SurfacePoint, TriangleMesh};
 
 use glam::DVec3;
 

@@ -1,0 +1,17 @@
+//! Ruled free forms: a negatively curved surface as strips of straight lines (Flöry, Nagai, Isvoranu, Pottmann, Wallner 2012,
+//! "Ruled free forms").
+//!
+//! Strips of straight lines join smoothly where their rulings follow the *asymptotic curves* of the surface: the curves whose
+//! osculating planes are tangent to it. Through each point of a negatively curved surface run two.
+//!
+//! # Notation
+//!
+//! The reference surface is a triangle mesh `Ψ` ([`TriangleMesh`](crate::mesh::TriangleMesh)), perhaps of a surface known as a
+//! formula ([`ReferenceSurface`](crate::mesh::ReferenceSurface)). At each point `v` a unit vector `a(v)` is tangent to the asymptotic
+//! curve of the family chosen: a [`Field`]. Strip boundaries are level sets of a function `f` on `Ψ`, across the asymptotic curves;
+//! `∇f` points the way that `a` does. A strip has control points `b_i0` on its first boundary, `b_i1` on its second, and is the
+//! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
+
+mod field;
+
+pub use field::Field;
