@@ -1,9 +1,11 @@
-//! Curves in space: cubic splines through given points, curves given as functions, points spread over them, and the nearest
+//! Curves in space: cubic splines through given points or with given control points, curves given as functions, points spread over them, and the nearest
 //! point of a curve.
 
+mod bspline;
 mod nearest;
 mod resample;
 
+pub use bspline::{BSpline, CubicBasis, LocalBasis};
 pub use nearest::{End, Foot, NearestOnCurve};
 pub use resample::{ArcLength, Spacing, resample};
 

@@ -13,9 +13,6 @@ const MOST_STEPS: usize = 50;
 /// How often a step that leads nowhere nearer is halved.
 const MOST_HALVINGS: usize = 30;
 
-/// Samples of a surface given as a formula in each direction.
-const SAMPLES: usize = 65;
-
 /// A point on the boundary of a mesh has a weight below this for a corner off the boundary.
 const ON_EDGE: f64 = 1e-9;
 
@@ -121,14 +118,17 @@ pub struct ParametricSurface<F> {
 }
 
 impl<F: Fn(f64, f64) -> SurfaceJet + Sync> ParametricSurface<F> {
-    /// The surface of `function` over the parameters from `ranges[k][0]` to `ranges[k][1]`.
+    /// The surface of `function` over the parameters from `ranges[k][0]` to `ranges[k][1]`. Each search for a nearest point starts
+    /// from a mesh of `samples[k]` points in each direction: they must be close enough to tell its parts from each other.
     ///
     /// # Errors
-    /// A range that is not finite or empty (`u`, `v`), or a sample that is not finite (`points[i]`).
-    pub fn new(ranges: [[f64; 2]; 2], function: F) -> Result<Self> {
-        let mesh = patterns::parametric_surface(SAMPLES, SAMPLES, ranges[0], ranges[1], |u, v| function(u, v).point)?;
-        let at = |k: usize, i: usize| ranges[k][0] + (ranges[k][1] - ranges[k][0]) * i as f64 / (SAMPLES - 1) as f64;
-        let parameters = (0..SAMPLES * SAMPLES).map(|i| [at(0, i % SAMPLES), at(1, i / SAMPLES)]).collect();
+    /// Fewer than 2 samples (`columns`, `rows`), a range that is not finite or empty (`u`, `v`), a sample that is not finite
+    /// (`points[i]`), or samples that are all one (`function`).
+    pub fn new(ranges: [[f64; 2]; 2], samples: [usize; 2], function: F) -> Result<Self> {
+        let [columns, rows] = samples;
+        let mesh = patterns::parametric_surface(columns, rows, ranges[0], ranges[1], |u, v| function(u, v).point)?;
+        let at = |k: usize, i: usize| ranges[k][0] + (ranges[k][1] - ranges[k][0]) * i as f64 / (samples[k] - 1) as f64;
+        let parameters = (0..columns * rows).map(|i| [at(0, i % columns), at(1, i / columns)]).collect();
         let halves = |face: &Vec<u32>| [[face[0], face[1], face[2]], [face[0], face[2], face[3]]];
         let triangles: Vec<[u32; 3]> = mesh.faces.iter().flat_map(halves).collect();
         let samples = ClosestPoints::of_triangles(&mesh.points, &triangles)?;
@@ -170,12 +170,12 @@ impl<F: Fn(f64, f64) -> SurfaceJet + Sync> ParametricSurface<F> {
         [u.clamp(self.ranges[0][0], self.ranges[0][1]), v.clamp(self.ranges[1][0], self.ranges[1][1])]
     }
 
-    /// The parameters of the nearest point, by Newton's method on half the squared distance within the rectangle.
+    /// The parameters of the nearest point to a finite point, by Newton's method on half the squared distance within the rectangle.
     ///
     /// With `d = S − p` the gradient is `(d·S_u, d·S_v)`, and the second derivatives are `S_u·S_u + d·S_uu` and so on. Where they
     /// are not positive definite the terms of `d` are left out, which leads downhill. A parameter at an end of its range that the
     /// gradient pushes outward stays there.
-    fn foot(&self, point: DVec3) -> [f64; 2] {
+    pub fn nearest_parameters(&self, point: DVec3) -> [f64; 2] {
         let mut at = self.seed(point);
         for _ in 0..MOST_STEPS {
             let jet = self.at(at[0], at[1]);
@@ -232,7 +232,7 @@ fn newton_step(jet: &SurfaceJet, apart: DVec3, slope: [f64; 2], is_held: [bool; 
 
 impl<F: Fn(f64, f64) -> SurfaceJet + Sync> ReferenceSurface for ParametricSurface<F> {
     fn nearest(&self, point: DVec3) -> SurfaceFoot {
-        let at = self.foot(point);
+        let at = self.nearest_parameters(point);
         let jet = self.at(at[0], at[1]);
         let normal = jet.normal();
         let is_at_end = (0..2).any(|k| self.ranges[k].contains(&at[k]));
@@ -261,7 +261,7 @@ mod tests {
             first: [DVec3::new(1.0, 0.0, y), DVec3::new(0.0, 1.0, x)],
             second: [DVec3::ZERO, DVec3::Z, DVec3::ZERO],
         };
-        ParametricSurface::new([[-1.0, 1.0], [-1.0, 1.0]], jet).unwrap()
+        ParametricSurface::new([[-1.0, 1.0], [-1.0, 1.0]], [33, 33], jet).unwrap()
     }
 
     #[test]
@@ -293,7 +293,7 @@ mod tests {
     fn what_is_beyond_the_boundary_says_how_far() {
         let flat = SurfaceJet { point: DVec3::ZERO, first: [DVec3::X, DVec3::Y], second: [DVec3::ZERO; 3] };
         let plane = move |u: f64, v: f64| SurfaceJet { point: DVec3::new(u, v, 0.0), ..flat };
-        let square = ParametricSurface::new([[0.0, 1.0], [0.0, 1.0]], plane).unwrap();
+        let square = ParametricSurface::new([[0.0, 1.0], [0.0, 1.0]], [2, 2], plane).unwrap();
         let mesh = TriangleMesh::new(&square.mesh(4, 5).unwrap()).unwrap();
         let mesh = ReferenceMesh::new(&mesh);
         for surface in [&square as &dyn ReferenceSurface, &mesh] {
@@ -335,7 +335,7 @@ mod tests {
             first: [DVec3::X, DVec3::Y],
             second: [DVec3::ZERO; 3],
         };
-        assert_eq!(ParametricSurface::new([[0.0, 1.0], [0.0, 1.0]], jet).unwrap_err().place(), "points[0]");
-        assert_eq!(ParametricSurface::new([[1.0, 2.0], [1.0, 0.0]], jet).unwrap_err().place(), "v");
+        assert_eq!(ParametricSurface::new([[0.0, 1.0], [0.0, 1.0]], [5, 5], jet).unwrap_err().place(), "points[0]");
+        assert_eq!(ParametricSurface::new([[1.0, 2.0], [1.0, 0.0]], [5, 5], jet).unwrap_err().place(), "v");
     }
 }
