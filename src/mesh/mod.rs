@@ -16,6 +16,7 @@ pub mod patterns;
 mod ply;
 mod polylines;
 pub mod reference;
+pub mod surfaces;
 mod topology;
 pub mod triangles;
 
