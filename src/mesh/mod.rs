@@ -4,6 +4,7 @@
 //! point `i` of the [`Mesh`], of a problem made from it, and of the file written back.
 
 mod closest;
+pub mod curvature;
 pub mod curve;
 pub mod file;
 pub mod fit;
