@@ -63,13 +63,15 @@ impl Field {
     }
 
     /// The unit vector in the plane of a triangle at the point with these weights of its corners; none if that of a corner is not
-    /// known, or if they cancel.
+    /// known, or if they cancel. A corner's vector that points against the first corner's is turned: so the vector is one of the line
+    /// even where signs cannot agree.
     pub fn at(&self, mesh: &TriangleMesh, triangle: usize, weights: [f64; 3]) -> Option<DVec3> {
         let corners = mesh.triangles()[triangle];
         if corners.iter().any(|&i| !self.is_known[i as usize]) {
             return None;
         }
-        let blended = blend(corners.map(|i| self.directions[i as usize]), weights);
+        let vectors = corners.map(|i| self.directions[i as usize]);
+        let blended = blend(vectors.map(|vector| vector * vector.dot(vectors[0]).signum()), weights);
         blended.reject_from_normalized(mesh.normal(triangle)).try_normalize()
     }
 }

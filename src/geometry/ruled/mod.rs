@@ -14,5 +14,7 @@
 
 pub mod asymptotic;
 mod field;
+pub mod orientation;
+pub mod tracing;
 
 pub use field::Field;
