@@ -15,6 +15,7 @@
 pub mod asymptotic;
 mod field;
 pub mod orientation;
+pub mod tangent_section;
 pub mod tracing;
 
 pub use field::Field;

@@ -222,7 +222,7 @@ mod tests {
         let normals: Vec<DVec3> = found.curvatures().iter().map(|c| c.normal).collect();
         let orient = |directions: Vec<DVec3>| {
             let known = vec![true; directions.len()];
-            super::orient(&mesh, &normals, directions, known, &Options::default()).unwrap()
+            orient(&mesh, &normals, directions, known, &Options::default()).unwrap()
         };
         let family = found.family(0).unwrap();
         let scrambled = family.iter().enumerate().map(|(i, &a)| if i * i % 7 < 3 { -a } else { a });

@@ -400,7 +400,6 @@ mod tests {
                 apart = apart.max(along.cross(ruling.normalize()).length());
             }
         }
-        println!("T-R4 straight {worst:e} direction {apart:e}");
         assert!(worst < 1e-3 && apart < 3e-3, "{worst} {apart}");
     }
 
@@ -455,7 +454,6 @@ mod tests {
             worst
         };
         let errors = [11, 21, 41].map(error);
-        println!("HELIX {errors:?}");
         assert!(errors[0] / errors[1] > 3.0 && errors[1] / errors[2] > 3.0 && errors[2] < 1e-3, "{errors:?}");
     }
 
@@ -491,6 +489,40 @@ mod tests {
     }
 
     #[test]
+    fn on_rough_meshes_curves_go_on_to_the_boundary() {
+        // Hills as steep as 2, points moved about, a spike, and a start at each corner and each middle of an edge.
+        let mut surface =
+            height_field(13, 13, [-1.0, 1.0], [-1.0, 1.0], |x, y| 0.4 * (5.0 * x).sin() * (4.0 * y).cos());
+        for (i, p) in surface.iter_mut().flat_map(|mesh| mesh.points.iter_mut()).enumerate() {
+            let t = i as f64;
+            *p += 0.04 * DVec3::new((7.3 * t).sin(), (3.9 * t).cos(), (5.1 * t).sin());
+            p.z += if i == 84 { 0.1 } else { 0.0 };
+        }
+        let surface = surface.unwrap();
+        for k in 0..5 {
+            let (sine, cosine) = (1.3 * f64::from(k)).sin_cos();
+            let (mesh, field) = exact(&surface, |_| DVec3::new(cosine, sine, 0.0));
+            let tracer = Tracer::new(&mesh, &field, &Options::default()).unwrap();
+            let reference = ReferenceMesh::new(&mesh);
+            let halves = [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
+            for weights in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().chain(halves) {
+                for triangle in 0..mesh.triangles().len() as u32 {
+                    let start = SurfacePoint { triangle, weights };
+                    let trace = tracer.trace(start, Sense::Forward, 40.0).unwrap();
+                    let last = trace.points[trace.points.len() - 1];
+                    assert!(trace.end == End::Boundary && reference.is_on_boundary(last), "{start:?} {:?}", trace.end);
+                    assert!(trace.points.len() > 1 || reference.is_on_boundary(start));
+                    // Steps may go over a ridge, but not beyond what they say.
+                    let steps = trace.positions.windows(2).map(|ends| ends[0].distance(ends[1]));
+                    assert!(
+                        steps.zip(trace.lengths.windows(2)).all(|(chord, l)| chord <= (l[1] - l[0]) * (1.0 + 1e-9))
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
     fn a_curve_ends_before_what_is_not_known_and_passes_where_signs_flip() {
         let monkey = |x: f64, y: f64| x * x * x - 3.0 * x * y * y;
         let surface = height_field(41, 41, [-1.0, 1.0], [-1.0, 1.0], monkey).unwrap();
@@ -502,14 +534,13 @@ mod tests {
             let triangle = mesh.fan(masked)[0];
             let trace = tracer.trace(SurfacePoint { triangle, weights: [0.5, 0.5, 0.0] }, Sense::Forward, 1.0).unwrap();
             assert!(trace.end == End::Unknown && trace.positions.len() == 1);
-            let (mut sharpest, mut unknown) = (1.0_f64, 0);
+            let mut sharpest = 1.0_f64;
             for triangle in (0..mesh.triangles().len() as u32).step_by(7) {
                 let start = SurfacePoint { triangle, weights: [0.2, 0.3, 0.5] };
                 if mesh.position(start).length() < 0.3 {
                     continue;
                 }
                 let trace = tracer.trace(start, Sense::Forward, 5.0).unwrap();
-                unknown += usize::from(trace.end == End::Unknown);
                 assert!(trace.end == End::Boundary || trace.end == End::Unknown, "{:?}", trace.end);
                 for three in trace.positions.windows(3) {
                     let (a, b) = (three[1] - three[0], three[2] - three[1]);
@@ -519,8 +550,7 @@ mod tests {
                     }
                 }
             }
-            println!("MONKEY {sharpest} {unknown}");
-            assert!(sharpest > 0.9, "{sharpest}");
+            assert!(sharpest > 0.98, "{sharpest}");
         }
     }
 
