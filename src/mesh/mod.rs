@@ -19,6 +19,7 @@ mod polylines;
 pub mod reference;
 mod topology;
 pub mod triangles;
+pub mod walk;
 
 pub use closest::ClosestPoints;
 pub use file::Format;
