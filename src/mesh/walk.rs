@@ -1,19 +1,20 @@
 //! Straight on over a triangle mesh.
 //!
-//! At an edge the direction is turned about it into the plane of the next triangle, as if both were unfolded into one plane, so that
-//! a walk never leaves the mesh: it is a straightest geodesic (Polthier and Schmies 1998) but for points of the mesh. What is
-//! walked in are the weights of a triangle's corners. Each changes at a constant rate, and the first to fall to 0 tells the edge, of
-//! which the walk is then exactly a point.
+//! At an edge the direction is turned about it into the plane of the next triangle, as if both were unfolded into one plane, so
+//! that a walk never leaves the mesh: it is a straightest geodesic (Polthier and Schmies 1998) but for points of the mesh. What
+//! is walked in are the weights of a triangle's corners. Each changes at a constant rate, and the first to fall to 0 tells the
+//! edge, of which the walk is then exactly a point.
 //!
-//! A straight line cannot leave a triangle by the edge that it came in by, so that edge is not asked: round-off does not send the
-//! walk back and forth. At a point of the mesh it goes around in one sense, triangle by triangle, until one has its direction inside.
+//! A straight line cannot leave a triangle by the edge that it came in by, so that edge is not asked: round-off does not send
+//! the walk back and forth. At a point of the mesh it goes around in one sense, triangle by triangle, until one has its
+//! direction inside.
 
 use glam::DVec3;
 
 use super::{SurfacePoint, TriangleMesh};
 
-/// Triangles that a walk goes through, as a multiple of those of the mesh, at most: beyond it, the walk ends where it is. Steps are
-/// short, and no such walk is known; the bound says that there is an end.
+/// Triangles that a walk goes through, as a multiple of those of the mesh, at most: beyond it, the walk ends where it is. Steps
+/// are short, and no such walk is known; the bound says that there is an end.
 const MOST_ROUNDS: usize = 64;
 
 /// A point of a mesh, and a direction.

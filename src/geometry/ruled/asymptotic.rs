@@ -1,16 +1,17 @@
 //! The two asymptotic directions at each point of a mesh, told apart.
 //!
-//! With principal curvatures `κ1 > 0 > κ2` and principal directions `p1`, `p2 = n × p1` the second fundamental form vanishes along
+//! With principal curvatures `κ1 > 0 > κ2` and principal directions `p1`, `p2 = n × p1` the second fundamental form vanishes
+//! along
 //!
 //! ```text
 //! d = (√−κ2 p1 ± √κ1 p2) / √(κ1 − κ2).
 //! ```
 //!
-//! The geodesic torsion `II(d, n × d)` there is `∓√(κ1 (−κ2)) = ∓√−K` (Beltrami and Enneper: it is the torsion of the asymptotic
-//! curve), and does not change under `d → −d` or `n → −n`. So its sign tells the two families apart at each point by itself: no
-//! search over the mesh is needed where Flöry et al. 2012, section 2.1, compare neighbours, and a family is the same whichever way
-//! faces are oriented. Along family 0 the torsion is negative: going along, the tangent plane turns like a left-handed screw; along
-//! family 1 like a right-handed one.
+//! The geodesic torsion `II(d, n × d)` there is `∓√(κ1 (−κ2)) = ∓√−K` (Beltrami and Enneper: it is the torsion of the
+//! asymptotic curve), and does not change under `d → −d` or `n → −n`. So its sign tells the two families apart at each point by
+//! itself: no search over the mesh is needed where Flöry et al. 2012, section 2.1, compare neighbours, and a family is the same
+//! whichever way faces are oriented. Along family 0 the torsion is negative: going along, the tangent plane turns like a
+//! left-handed screw; along family 1 like a right-handed one.
 //!
 //! Where `K ≥ 0` the surface has no asymptotic direction, and none is made up: such points are masked.
 
@@ -20,8 +21,8 @@ use crate::error::{Error, Result, Status};
 use crate::mesh::TriangleMesh;
 use crate::mesh::curvature::{self, Curvature, Fit, curvatures};
 
-/// Round-off of coordinates in heights over a tangent plane, as a multiple of the largest coordinate: a few units in the last place,
-/// times what the fit makes of them.
+/// Round-off of coordinates in heights over a tangent plane, as a multiple of the largest coordinate: a few units in the last
+/// place, times what the fit makes of them.
 const HEIGHT_NOISE: f64 = 1e-13;
 
 /// What counts as negatively curved, and how much must be.
@@ -29,10 +30,10 @@ const HEIGHT_NOISE: f64 = 1e-13;
 pub struct Options {
     /// How curvatures are found.
     pub curvature: curvature::Options,
-    /// Points where the Gaussian curvature is not below minus this times the square of the greatest principal curvature of the mesh
-    /// are masked: their directions are all but one, and turn with the least noise. From 0 to 1. Curvatures that were fitted err by the
-    /// square of an edge times that of the curvature: on a mesh of edges `h` and curvatures up to `κ`, a cylinder can come out
-    /// slightly negative. Who must tell it apart asks for about `(h κ)²`.
+    /// Points where the Gaussian curvature is not below minus this times the square of the greatest principal curvature of the
+    /// mesh are masked: their directions are all but one, and turn with the least noise. From 0 to 1. Curvatures that were
+    /// fitted err by the square of an edge times that of the curvature: on a mesh of edges `h` and curvatures up to `κ`, a
+    /// cylinder can come out slightly negative. Who must tell it apart asks for about `(h κ)²`.
     pub flatness: f64,
     /// The part of the points that may be masked, from 0 to 1. Never all.
     pub max_mask: f64,
@@ -160,8 +161,8 @@ mod tests {
         Ok((mesh, found))
     }
 
-    /// The largest sine of an angle between a direction and the exact line of its family, over the points inside and over those on
-    /// the boundary.
+    /// The largest sine of an angle between a direction and the exact line of its family, over the points inside and over those
+    /// on the boundary.
     fn worst(mesh: &Mesh, exact: &impl Fn(DVec3) -> [DVec3; 2]) -> [f64; 2] {
         let (mesh, found) = find(mesh).unwrap();
         assert_eq!(found.masked_count(), 0);

@@ -1,10 +1,10 @@
 //! Signs for asymptotic directions: from a field of lines to a [`Field`] of vectors.
 //!
-//! An asymptotic direction is a line, and either of its unit vectors is as good. A function whose level sets are to cross the lines
-//! needs vectors that agree. Two neighbours are compared by turning the tangent plane of one into that of the other, by the least
-//! rotation, which takes normal to normal; the surer comparisons, those near ±1, are heeded first: along a maximum spanning tree.
-//! Whatever edge is left then disagrees only if no choice of signs agrees everywhere: the lines turn by an odd number of half turns
-//! around a flat point, as on the monkey saddle, or around a hole.
+//! An asymptotic direction is a line, and either of its unit vectors is as good. A function whose level sets are to cross the
+//! lines needs vectors that agree. Two neighbours are compared by turning the tangent plane of one into that of the other, by
+//! the least rotation, which takes normal to normal; the surer comparisons, those near ±1, are heeded first: along a maximum
+//! spanning tree. Whatever edge is left then disagrees only if no choice of signs agrees everywhere: the lines turn by an odd
+//! number of half turns around a flat point, as on the monkey saddle, or around a hole.
 
 use glam::DVec3;
 
@@ -37,15 +37,15 @@ pub struct Oriented {
     /// The edges across which the vector flips though the line does not, in the order of the mesh's edges. Empty unless a cut was
     /// allowed, save for edges across which even the line is unsure.
     ///
-    /// There is no function whose gradient follows a field with flips. What is asked of a gradient must not depend on signs then, in
-    /// every triangle: `∇f × a = 0`, not `∇f = a`, along with a term that keeps `f` from being constant.
-    /// [`Field::at`] is a unit vector of the line in triangles with a flip too.
+    /// There is no function whose gradient follows a field with flips. What is asked of a gradient must not depend on signs
+    /// then, in every triangle: `∇f × a = 0`, not `∇f = a`, along with a term that keeps `f` from being constant. [`Field::at`]
+    /// is a unit vector of the line in triangles with a flip too.
     pub flips: Vec<[u32; 2]>,
 }
 
 impl AsymptoticDirections {
-    /// Gives the directions of a family signs that agree. Masked points have no direction, and parts of the mesh between which there
-    /// are only such points are parts of their own.
+    /// Gives the directions of a family signs that agree. Masked points have no direction, and parts of the mesh between which
+    /// there are only such points are parts of their own.
     ///
     /// # Errors
     /// Not as many points as the mesh that directions were found on (`mesh`), `family` is not 0 or 1, or `hint` is no direction.

@@ -1,11 +1,11 @@
 //! Short pieces of asymptotic curves, by intersecting a mesh with a tangent plane of its own (Flöry et al. 2012, figure 4).
 //!
-//! Where a surface is negatively curved, its tangent plane at a point cuts it in two curves that cross there, tangent to the two
-//! asymptotic directions. Where it is positively curved the plane meets it in the point alone. On a mesh the section is where the
-//! function `h`, the height over the plane, linear on triangles, is 0. From each edge on the rim of the triangles around the point that
-//! `h` changes its sign along, a branch leads inward. Points on the plane count as above it, so that no branch is lost or found
-//! twice. A mesh often does not cross as the surface does, and two branches lead into each other beside the point: then each is taken
-//! to where they come nearest, and from there to the point.
+//! Where a surface is negatively curved, its tangent plane at a point cuts it in two curves that cross there, tangent to the
+//! two asymptotic directions. Where it is positively curved the plane meets it in the point alone. On a mesh the section is
+//! where the function `h`, the height over the plane, linear on triangles, is 0. From each edge on the rim of the triangles
+//! around the point that `h` changes its sign along, a branch leads inward. Points on the plane count as above it, so that no
+//! branch is lost or found twice. A mesh often does not cross as the surface does, and two branches lead into each other beside
+//! the point: then each is taken to where they come nearest, and from there to the point.
 //!
 //! This shows how asymptotic curves come about; it is no way to find them well. How many neighbours there are around the point
 //! does not grow as the mesh gets finer, and directions stay off by some degrees at any fineness.
@@ -27,8 +27,9 @@ const RINGS: Range<usize> = 1..65;
 /// The section of a mesh with its tangent plane at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TangentSection {
-    /// Each branch as a polyline in the plane from the point outward, counterclockwise around it: four where the surface is negatively
-    /// curved, none where it is flat or positively curved. At the boundary there are as many as the triangles there show.
+    /// Each branch as a polyline in the plane from the point outward, counterclockwise around it: four where the surface is
+    /// negatively curved, none where it is flat or positively curved. At the boundary there are as many as the triangles there
+    /// show.
     pub branches: Vec<Vec<DVec3>>,
 }
 

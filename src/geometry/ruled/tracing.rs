@@ -1,8 +1,9 @@
 //! Asymptotic curves: integral curves of a field on a triangle mesh (Flöry et al. 2012, figure 5).
 //!
-//! A step goes straight over the triangles ([`Walker`]), and is one of the midpoint rule. The direction halfway is compared with the one that the half step arrives with,
-//! and the step goes off turned by the angle between them: no vector is ever carried from one tangent plane to another but along the
-//! walk. The rule is of second order in the step, as the field is in the edges.
+//! A step goes straight over the triangles ([`Walker`]), and is one of the midpoint rule. The direction halfway is compared
+//! with the one that the half step arrives with, and the step goes off turned by the angle between them: no vector is ever
+//! carried from one tangent plane to another but along the walk. The rule is of second order in the step, as the field is in
+//! the edges.
 //!
 //! Signs of the field are only heeded at the start. From then on the vectors of corners count as lines and are taken the way that
 //! the curve goes: curves cross the edges at which the signs of a field that has none flip.
@@ -29,8 +30,8 @@ const NOTHING_LEFT: f64 = 1e-9;
 /// How steps are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// The length of a step, as a part of the edge of an equilateral triangle as large as that which the step begins in: above 0 and at
-    /// most 0.5.
+    /// The length of a step, as a part of the edge of an equilateral triangle as large as that which the step begins in: above
+    /// 0 and at most 0.5.
     pub step: f64,
     /// Steps at most; at least 1.
     pub most_steps: usize,
@@ -141,8 +142,8 @@ impl<'a> Tracer<'a> {
         Ok(Trace { positions, points, lengths, end: end.end })
     }
 
-    /// Follows the curve from `start` for `length` model units at most. `step` is called with both ends of every step, and can end
-    /// the curve there. Nothing is allocated.
+    /// Follows the curve from `start` for `length` model units at most. `step` is called with both ends of every step, and can
+    /// end the curve there. Nothing is allocated.
     ///
     /// # Errors
     /// `start` is no point of the mesh, or `length` is not above 0 or not finite.
