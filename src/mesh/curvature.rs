@@ -20,6 +20,7 @@ use rayon::prelude::*;
 
 use super::TriangleMesh;
 use crate::error::{Error, Result, Status};
+use crate::linalg::householder::{solve, triangularise};
 
 /// How often the jet is fitted, each time over the tangent plane of the fit before.
 const FITS: usize = 3;
@@ -112,7 +113,8 @@ pub fn curvatures(mesh: &TriangleMesh, options: &Options) -> Result<Vec<Curvatur
     Ok((0..count).into_par_iter().with_min_len(count / 64 + 256).map_init(scratch, work).collect())
 }
 
-/// One row of the least squares problem: the terms of the jet at a neighbour, then its height, all times its weight's root.
+/// One row of the least squares problem: the terms of the jet at a neighbour, the cubic ones last so that the leading ones can be
+/// fitted alone, then its height; all times its weight's root.
 type Row = [f64; CUBIC + 1];
 
 #[derive(Default)]
@@ -198,56 +200,16 @@ impl Scratch {
             let terms = [x, y, 0.5 * x * x, x * y, 0.5 * y * y, x * x * x, x * x * y, x * y * y, y * y * y, z];
             terms.map(|term| w * term)
         }));
-        let rank = triangularise(&mut self.rows);
+        let rank = triangularise(&mut self.rows, INDEPENDENT);
         let terms = match rank {
             CUBIC => CUBIC,
             QUADRATIC.. => QUADRATIC,
             _ => return None,
         };
-        let mut solution = [0.0; CUBIC];
-        for k in (0..terms).rev() {
-            let known: f64 = (k + 1..terms).map(|l| self.rows[k][l] * solution[l]).sum();
-            solution[k] = (self.rows[k][CUBIC] - known) / self.rows[k][k];
-        }
-        let [g1, g2, a, b, c, ..] = solution;
+        let [g1, g2, a, b, c, ..] = solve(&self.rows, terms);
         let fit = if terms == CUBIC { Fit::Cubic } else { Fit::Quadratic };
         Some(Jet { slope: [g1, g2], second: [a, b, c], fit })
     }
-}
-
-/// Takes the columns of `rows` to upper triangular form by Householder reflections, and the heights along; cubic columns are
-/// last, so that the leading block alone is the fit without them. Returns how many columns from the first on are independent.
-fn triangularise(rows: &mut [Row]) -> usize {
-    let mut sizes = [0.0; CUBIC];
-    for row in rows.iter() {
-        (0..CUBIC).for_each(|k| sizes[k] += row[k] * row[k]);
-    }
-    for k in 0..CUBIC {
-        let length = rows.iter().skip(k).map(|row| row[k] * row[k]).sum::<f64>().sqrt();
-        // As good as false for what is not a number, too.
-        if !(length > INDEPENDENT * sizes[k].sqrt()) {
-            return k;
-        }
-        // The reflection along v = x + sign(x_k) |x| e_k takes x to −sign(x_k) |x| e_k; ½ v·v = |x| (|x| + |x_k|).
-        let head = rows[k][k] + length.copysign(rows[k][k]);
-        let half_square = length * head.abs();
-        let mut dots = [0.0; CUBIC + 1];
-        for l in k + 1..=CUBIC {
-            dots[l] = head * rows[k][l];
-        }
-        for row in rows.iter().skip(k + 1) {
-            (k + 1..=CUBIC).for_each(|l| dots[l] += row[k] * row[l]);
-        }
-        for l in k + 1..=CUBIC {
-            dots[l] /= half_square;
-            rows[k][l] -= head * dots[l];
-        }
-        for row in rows.iter_mut().skip(k + 1) {
-            (k + 1..=CUBIC).for_each(|l| row[l] -= row[k] * dots[l]);
-        }
-        rows[k][k] -= head;
-    }
-    CUBIC
 }
 
 /// Curvatures and directions of the form `[[a, b], [b, c]]`, given in units of 1/`unit`.
