@@ -4,6 +4,7 @@
 //! point `i` of the [`Mesh`], of a problem made from it, and of the file written back.
 
 mod closest;
+pub mod curvature;
 pub mod curve;
 pub mod file;
 pub mod fit;
@@ -19,6 +20,7 @@ pub mod reference;
 pub mod surfaces;
 mod topology;
 pub mod triangles;
+pub mod walk;
 
 pub use closest::ClosestPoints;
 pub use file::Format;

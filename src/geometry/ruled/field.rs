@@ -19,12 +19,12 @@ pub struct Field {
 
 impl Field {
     /// The field with these unit vectors at the points of a mesh; `is_known` is false where the surface has no asymptotic
-    /// direction, and the vector is not used. Vectors are taken into the tangent plane of the point's normal only where a triangle
-    /// asks for them ([`Field::on_triangle`]).
+    /// direction, and the vector is not used. Vectors are taken into the tangent plane of the point's normal only where a
+    /// triangle asks for them ([`Field::on_triangle`]).
     ///
     /// # Errors
-    /// Not one vector and one flag for each point, or a vector that is not finite or, where known, not of unit length; the place is
-    /// `directions`, `is_known` or `directions[i]`.
+    /// Not one vector and one flag for each point, or a vector that is not finite or, where known, not of unit length; the
+    /// place is `directions`, `is_known` or `directions[i]`.
     pub fn new(mesh: &TriangleMesh, directions: Vec<DVec3>, is_known: Vec<bool>) -> Result<Self> {
         let count = mesh.points().len();
         for (name, found) in [("directions", directions.len()), ("is_known", is_known.len())] {
@@ -62,14 +62,16 @@ impl Field {
         self.at(mesh, triangle, [1.0 / 3.0; 3])
     }
 
-    /// The unit vector in the plane of a triangle at the point with these weights of its corners; none if that of a corner is not
-    /// known, or if they cancel.
+    /// The unit vector in the plane of a triangle at the point with these weights of its corners; none if that of a corner is
+    /// not known, or if they cancel. A corner's vector that points against the first corner's is turned: so the vector is one
+    /// of the line even where signs cannot agree.
     pub fn at(&self, mesh: &TriangleMesh, triangle: usize, weights: [f64; 3]) -> Option<DVec3> {
         let corners = mesh.triangles()[triangle];
         if corners.iter().any(|&i| !self.is_known[i as usize]) {
             return None;
         }
-        let blended = blend(corners.map(|i| self.directions[i as usize]), weights);
+        let vectors = corners.map(|i| self.directions[i as usize]);
+        let blended = blend(vectors.map(|vector| vector * vector.dot(vectors[0]).signum()), weights);
         blended.reject_from_normalized(mesh.normal(triangle)).try_normalize()
     }
 }
@@ -103,7 +105,7 @@ mod tests {
             Field::new(&mesh, directions.to_vec(), is_known.to_vec()).unwrap_err().place().to_owned()
         };
         assert_eq!(place(&directions[1..], &vec![true; count]), "directions");
-        assert_eq!(place(&directions, &vec![true; 3]), "is_known");
+        assert_eq!(place(&directions, &[true; 3]), "is_known");
         let mut long = directions;
         long[3] *= 1.1;
         assert_eq!(place(&long, &vec![true; count]), "directions[3]");

@@ -12,8 +12,12 @@
 //! `∇f` points the way that `a` does. A strip has control points `b_i0` on its first boundary, `b_i1` on its second, and is the
 //! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
 
+pub mod asymptotic;
 mod field;
 mod strip;
+pub mod orientation;
+pub mod tangent_section;
+pub mod tracing;
 
 pub use field::Field;
 pub use strip::Strip;
