@@ -5,6 +5,7 @@ pub mod cholesky;
 pub mod conjugate_gradients;
 pub mod dense;
 mod fronts;
+pub mod gauss_newton;
 pub mod lanes;
 pub mod least_squares;
 mod multilevel;

@@ -13,5 +13,8 @@
 //! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
 
 mod field;
+pub mod level_function;
+mod level_terms;
+pub mod spherical_image;
 
 pub use field::Field;
