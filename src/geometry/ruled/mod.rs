@@ -12,9 +12,15 @@
 //! `∇f` points the way that `a` does. A strip has control points `b_i0` on its first boundary, `b_i1` on its second, and is the
 //! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
 
+pub mod boundaries;
+mod boundary;
 mod field;
 pub mod level_function;
+#[cfg(test)]
+mod level_function_tests;
 mod level_terms;
 pub mod spherical_image;
+mod walk;
 
+pub use boundary::Boundary;
 pub use field::Field;
