@@ -335,17 +335,9 @@ pub fn drawn_boundaries(
     let mut chain: Vec<Boundary> = Vec::with_capacity(curves.len());
     for (k, curve) in curves.iter().enumerate() {
         let boundary = drawn(surface, &rim, curve, k).map_err(|error| error.at(format!("curves[{k}]")))?;
-        if let Some(last) = chain.last() {
-            // Ahead: the way from the nearest point of the last curve goes along the field.
-            let middle = boundary.points[boundary.points.len() / 2];
-            let nearest = (0..last.points.len()).min_by(|&a, &b| {
-                last.points[a].distance_squared(middle).total_cmp(&last.points[b].distance_squared(middle))
-            });
-            let ahead = nearest.and_then(|i| Some((middle - last.points[i]).dot(rim.directions(last)[i]?)));
-            if !ahead.is_some_and(|ahead| ahead > 0.0) {
-                let reason = "expected a curve ahead of the one before, along the field";
-                return Err(Error::new(Status::Infeasible, reason).at(format!("curves[{k}]")));
-            }
+        if chain.last().is_some_and(|last| !rim.is_ahead(&boundary, last)) {
+            let reason = "expected a curve ahead of the one before, along the field";
+            return Err(Error::new(Status::Infeasible, reason).at(format!("curves[{k}]")));
         }
         chain.push(boundary);
     }
@@ -369,15 +361,9 @@ fn drawn(surface: &ReferenceMesh<'_>, rim: &Rim<'_>, curve: &Drawn, k: usize) ->
     }
     let on_surface = on_surface.into_iter().map(Some).collect();
     let mut boundary = Boundary { points, on_surface, is_closed: curve.is_closed, level: k as f64 };
-    let crossings: Vec<f64> = rim.crossings(&boundary).into_iter().flatten().collect();
-    let turned = if crossings.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
-    if crossings.is_empty() || crossings.iter().any(|sine| sine * turned <= 0.0) {
+    if !rim.turn(&mut boundary).is_some_and(|least| least > 0.0) {
         let reason = "expected a curve that the field crosses from one side";
         return Err(Error::new(Status::Infeasible, reason));
-    }
-    if turned < 0.0 {
-        boundary.points.reverse();
-        boundary.on_surface.reverse();
     }
     Ok(boundary)
 }

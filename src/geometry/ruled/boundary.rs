@@ -137,7 +137,7 @@ impl<'a> Rim<'a> {
         let count = points.len();
         let (low, high) = if is_forward { (a, b) } else { (b, a) };
         let high = if high < low { high + count as f64 } else { high };
-        let span = (low.floor() as usize + 1)..=(high.ceil() as usize).saturating_sub(1).max(low.floor() as usize);
+        let span = (low.floor() as usize + 1)..=(high.ceil() as usize).saturating_sub(1);
         let mut stretch: Stretch = span.map(|k| points[k % count]).collect();
         if !is_forward {
             stretch.reverse();
@@ -274,6 +274,28 @@ impl<'a> Rim<'a> {
             directions[i - 1] = directions[i - 1].or(directions[i]);
         }
         directions
+    }
+
+    /// Whether a boundary is ahead of another along the field: seen from its middle, at the nearest point of the other.
+    pub fn is_ahead(&self, boundary: &Boundary, of: &Boundary) -> bool {
+        let middle = boundary.points[boundary.points.len() / 2];
+        let distance = |i: &usize| of.points[*i].distance_squared(middle);
+        let nearest = (0..of.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let ahead = nearest.and_then(|i| Some((middle - of.points[i]).dot(self.directions(of)[i]?)));
+        ahead.is_some_and(|ahead| ahead > 0.0)
+    }
+
+    /// Turns a boundary around if the field leads to its right, and says how small the angle between them gets, in radians: 0 if the
+    /// field crosses from both sides; none where the field is not known anywhere along it.
+    pub fn turn(&self, boundary: &mut Boundary) -> Option<f64> {
+        let sines: Vec<f64> = self.crossings(boundary).into_iter().flatten().collect();
+        let sign = if sines.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
+        if sign < 0.0 {
+            boundary.points.reverse();
+            boundary.on_surface.reverse();
+        }
+        let least = sines.into_iter().map(|sine| sign * sine).min_by(f64::total_cmp)?;
+        Some(least.clamp(0.0, 1.0).asin())
     }
 
     /// The field at a point of the mesh, in the tangent plane of the blended normal.

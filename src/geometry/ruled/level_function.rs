@@ -23,6 +23,9 @@ use crate::mesh::level_curves::critical_points;
 pub struct LevelWeights {
     /// Boundaries orthogonal to the field: the mean of `‖∇f − a‖²` over the area.
     pub orthogonal: f64,
+    /// Boundaries orthogonal to the field, at whatever distances: the mean of the square of the part of `∇f` across `a`. The paper
+    /// has no such term; where no function has the field as its gradient it serves where right angles count more than widths.
+    pub direction: f64,
     /// Boundaries at constant distances: the mean of `(‖∇f‖ − 1)²`.
     pub equidistant: f64,
     /// Geodesic boundaries: the integral of the squared geodesic curvature `div(∇f/‖∇f‖)`. It is as small for any other function
@@ -38,7 +41,9 @@ pub struct LevelWeights {
 impl LevelWeights {
     /// Boundaries orthogonal to the field.
     pub const ORTHOGONAL: Self =
-        Self { orthogonal: 1.0, equidistant: 0.0, geodesic: 0.0, conoidal: 0.0, laplace: 1e-3 };
+        Self { orthogonal: 1.0, direction: 0.0, equidistant: 0.0, geodesic: 0.0, conoidal: 0.0, laplace: 1e-3 };
+    /// Boundaries at right angles to the field, whatever their distances.
+    pub const DIRECTION: Self = Self { orthogonal: 1e-3, direction: 1.0, ..Self::ORTHOGONAL };
     /// Boundaries at constant distances.
     pub const EQUIDISTANT: Self = Self { orthogonal: 0.1, equidistant: 1.0, ..Self::ORTHOGONAL };
     /// Geodesic boundaries.
@@ -70,7 +75,7 @@ impl Default for LevelOptions {
             flips: Vec::new(),
             allows_folds: false,
             max_iterations: 30,
-            relative_decrease: 1e-10,
+            relative_decrease: 1e-6,
         }
     }
 }
@@ -125,6 +130,7 @@ pub(super) fn solve(
     let uses_image = image.as_ref().is_some_and(|image| is_area(image.report().kind));
     let weights = TermWeights {
         orthogonal: options.weights.orthogonal,
+        direction: options.weights.direction,
         equidistant: options.weights.equidistant,
         geodesic: options.weights.geodesic,
         conoidal: if uses_image { options.weights.conoidal } else { 0.0 },
@@ -168,9 +174,10 @@ fn is_area(kind: ImageKind) -> bool {
 }
 
 fn check(mesh: &TriangleMesh, field: &Field, options: &LevelOptions) -> Result<()> {
-    let LevelWeights { orthogonal, equidistant, geodesic, conoidal, laplace } = options.weights;
+    let LevelWeights { orthogonal, direction, equidistant, geodesic, conoidal, laplace } = options.weights;
     let named = [
         ("weights.orthogonal", orthogonal),
+        ("weights.direction", direction),
         ("weights.equidistant", equidistant),
         ("weights.geodesic", geodesic),
         ("weights.conoidal", conoidal),

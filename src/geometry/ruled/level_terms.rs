@@ -6,6 +6,7 @@
 //! | term        | residuals                                          | at                                            |
 //! |-------------|----------------------------------------------------|-----------------------------------------------|
 //! | orthogonal  | `√(A/\|Ψ\|) (g − a)`                               | triangles; its part across `a` if unoriented  |
+//! | direction   | `√(A/\|Ψ\|) g·(n × a)`                             | triangles                                     |
 //! | equidistant | `√(A/\|Ψ\|) (‖g‖ − 1)`                             | triangles                                     |
 //! | geodesic    | `√A_v div(g/‖g‖)`                                  | points inside                                 |
 //! | conoidal    | the same in the metric of the spherical image      | points inside                                 |
@@ -118,6 +119,7 @@ struct Bending {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TermWeights {
     pub orthogonal: f64,
+    pub direction: f64,
     pub equidistant: f64,
     pub geodesic: f64,
     pub conoidal: f64,
@@ -238,14 +240,14 @@ impl<'a> Terms<'a> {
     fn linear_on(&self, t: usize) -> impl Iterator<Item = (DVec3, f64)> {
         let share = self.mesh.area(t) / self.total_area;
         let normal = self.mesh.normal(t);
-        let (frame, is_unoriented, weight) = match self.directions[t] {
-            Some(a) => (a, self.is_unoriented, self.weights.orthogonal),
-            None => (normal.any_orthonormal_vector(), false, HARMONIC),
+        let (frame, target, along, across) = match self.directions[t] {
+            Some(a) => (a, 1.0, self.weights.orthogonal, self.weights.orthogonal + self.weights.direction),
+            None => (normal.any_orthonormal_vector(), 0.0, HARMONIC, HARMONIC),
         };
-        let root = (weight * share).sqrt();
-        let target = if self.directions[t].is_some() { root } else { 0.0 };
-        let along = (!is_unoriented).then_some((root * frame, target));
-        [along, Some((root * normal.cross(frame), 0.0))].into_iter().flatten().filter(move |_| root > 0.0)
+        let along = if self.is_unoriented && target > 0.0 { 0.0 } else { along };
+        let [along, across] = [along, across].map(|weight| (weight * share).sqrt());
+        let residuals = [(along * frame, along * target), (across * normal.cross(frame), 0.0)];
+        residuals.into_iter().zip([along, across]).filter(|(_, root)| *root > 0.0).map(|(residual, _)| residual)
     }
 
     /// Where the lengths of gradients count, and the root of the weight.
@@ -364,7 +366,14 @@ mod tests {
         // A cut with a jump that is known beside one that is not, wherever.
         let corners = vec![(3, 0, 1.0), (4, 0, 1.0), (7, 1, 1.0), (9, 0, -1.0)];
         let jumps = Jumps { corners, values: vec![None, Some(0.3)] };
-        let weights = TermWeights { orthogonal: 0.3, equidistant: 0.7, geodesic: 0.9, conoidal: 0.0, laplace: 0.4 };
+        let weights = TermWeights {
+            orthogonal: 0.3,
+            direction: 0.2,
+            equidistant: 0.7,
+            geodesic: 0.9,
+            conoidal: 0.0,
+            laplace: 0.4,
+        };
         for is_unoriented in [false, true] {
             let mut terms = Terms::new(&mesh, directions.clone(), &jumps, weights, is_unoriented);
             let count = terms.unknown_count();

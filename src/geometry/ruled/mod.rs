@@ -13,12 +13,16 @@
 //! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
 
 pub mod boundaries;
+#[cfg(test)]
+mod boundaries_tests;
 mod boundary;
 mod field;
 pub mod level_function;
 #[cfg(test)]
 mod level_function_tests;
 mod level_terms;
+pub mod periods;
+pub mod planar_boundaries;
 pub mod spherical_image;
 mod walk;
 
