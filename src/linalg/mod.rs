@@ -6,6 +6,7 @@ pub mod conjugate_gradients;
 pub mod dense;
 mod fronts;
 pub mod householder;
+pub mod gauss_newton;
 pub mod lanes;
 pub mod least_squares;
 mod multilevel;

@@ -9,6 +9,7 @@ pub mod curve;
 pub mod file;
 pub mod fit;
 pub mod grid;
+pub mod level_curves;
 pub mod measure;
 mod obj;
 mod off;

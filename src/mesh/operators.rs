@@ -43,7 +43,8 @@ pub fn mixed_areas(mesh: &TriangleMesh) -> Vec<f64> {
     areas
 }
 
-fn mixed_parts(corners: [DVec3; 3], area: f64) -> [f64; 3] {
+/// What a triangle of this area, above 0, gives of it to each of its corners: [`mixed_areas`] adds them up.
+pub fn mixed_parts(corners: [DVec3; 3], area: f64) -> [f64; 3] {
     let side = |k: usize| corners[(k + 1) % 3] - corners[k % 3];
     // The dot product of the two sides at a corner, which is below 0 for an obtuse angle.
     let dots = [0, 1, 2].map(|k| side(k).dot(-side(k + 2)));

@@ -18,6 +18,20 @@ mod strip;
 pub mod orientation;
 pub mod tangent_section;
 pub mod tracing;
+pub mod boundaries;
+#[cfg(test)]
+mod boundaries_tests;
+mod boundary;
+mod field;
+pub mod level_function;
+#[cfg(test)]
+mod level_function_tests;
+mod level_terms;
+pub mod periods;
+pub mod planar_boundaries;
+pub mod spherical_image;
+mod walk;
 
+pub use boundary::Boundary;
 pub use field::Field;
 pub use strip::Strip;
