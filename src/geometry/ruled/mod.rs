@@ -13,6 +13,7 @@
 //! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
 
 mod field;
+pub mod start;
 mod strip;
 
 pub use field::Field;
