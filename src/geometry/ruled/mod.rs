@@ -12,9 +12,20 @@
 //! `∇f` points the way that `a` does. A strip has control points `b_i0` on its first boundary, `b_i1` on its second, and is the
 //! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
 
+mod bounds;
+pub mod conditions;
+mod coverage;
 mod field;
+mod layout;
+pub mod optimise;
+mod pull;
 pub mod start;
 mod strip;
+mod system;
+pub mod terms;
+mod thin_plate;
 
+pub use bounds::Bounds;
 pub use field::Field;
+pub use layout::Joints;
 pub use strip::Strip;
