@@ -4,6 +4,7 @@ pub mod bfgs;
 pub mod cholesky;
 pub mod conjugate_gradients;
 pub mod dense;
+pub mod elimination;
 mod fronts;
 pub mod householder;
 pub mod gauss_newton;

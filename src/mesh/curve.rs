@@ -2,10 +2,13 @@
 //! point of a curve.
 
 mod bspline;
+mod least_squares;
 mod nearest;
 mod resample;
 
 pub use bspline::{BSpline, CubicBasis, LocalBasis};
+pub(crate) use least_squares::fit;
+pub use least_squares::{Polyline, fit_polyline};
 pub use nearest::{End, Foot, NearestOnCurve};
 pub use resample::{ArcLength, Spacing, resample};
 

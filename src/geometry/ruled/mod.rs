@@ -13,7 +13,14 @@
 //! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
 
 pub mod asymptotic;
+mod bounds;
+pub mod conditions;
+mod coverage;
 mod field;
+mod layout;
+pub mod optimise;
+mod pull;
+pub mod start;
 mod strip;
 pub mod orientation;
 pub mod tangent_section;
@@ -33,5 +40,11 @@ pub mod spherical_image;
 mod walk;
 
 pub use boundary::Boundary;
+mod system;
+pub mod terms;
+mod thin_plate;
+
+pub use bounds::Bounds;
 pub use field::Field;
+pub use layout::Joints;
 pub use strip::Strip;
