@@ -14,6 +14,7 @@
 
 mod field;
 mod strip;
+pub mod trim;
 
 pub use field::Field;
 pub use strip::Strip;
