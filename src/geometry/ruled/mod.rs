@@ -12,9 +12,14 @@
 //! `∇f` points the way that `a` does. A strip has control points `b_i0` on its first boundary, `b_i1` on its second, and is the
 //! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
 
+pub mod export;
 mod field;
+pub mod file;
+pub mod planks;
+pub mod report;
 mod strip;
 pub mod trim;
+pub mod zebra;
 
 pub use field::Field;
 pub use strip::Strip;

@@ -273,4 +273,4 @@ fn area(strip: &Strip, [a, b, c]: [[f64; 2]; 3]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+pub mod tests;

@@ -1,0 +1,1 @@
+//! Strips for other programs.
