@@ -17,6 +17,7 @@ mod field;
 pub mod file;
 pub mod planks;
 pub mod report;
+pub mod rulings_problem;
 mod strip;
 pub mod trim;
 pub mod zebra;
