@@ -38,6 +38,15 @@ pub mod periods;
 pub mod planar_boundaries;
 pub mod spherical_image;
 mod walk;
+pub mod export;
+mod field;
+pub mod file;
+pub mod planks;
+pub mod report;
+pub mod rulings_problem;
+mod strip;
+pub mod trim;
+pub mod zebra;
 
 pub use boundary::Boundary;
 mod system;

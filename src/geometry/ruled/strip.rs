@@ -67,10 +67,11 @@ impl Strip {
 
     /// Rulings, evenly spread over `u`, the first and the last included (of a closed strip these are one, given once).
     pub fn rulings(&self, count: usize) -> Vec<[DVec3; 2]> {
-        self.parameters(count).into_iter().map(|u| self.ruling(u)).collect()
+        self.ruling_parameters(count).into_iter().map(|u| self.ruling(u)).collect()
     }
 
-    fn parameters(&self, count: usize) -> Vec<f64> {
+    /// The parameters of [`Strip::rulings`].
+    pub fn ruling_parameters(&self, count: usize) -> Vec<f64> {
         let parts = if self.basis().is_closed() { count } else { count.max(2) - 1 };
         (0..count).map(|i| self.length_u() * i as f64 / parts as f64).collect()
     }
