@@ -140,7 +140,8 @@ fn check(strips: &[Strip], joints: &Joints) -> Result<()> {
             return Err(Error::new(Status::InvalidValue, reason).at(format!("joints.pairs[{k}]")));
         }
     }
-    let all: Vec<DVec3> = strips.iter().flat_map(|strip| [0, 1].map(|side| strip.control(side))).flatten().copied().collect();
+    let all: Vec<DVec3> =
+        strips.iter().flat_map(|strip| [0, 1].map(|side| strip.control(side))).flatten().copied().collect();
     if !(diagonal(&all).is_finite() && diagonal(&all) > 0.0) {
         return Err(Error::new(Status::Degenerate, "expected strips of a finite size above 0").at("strips"));
     }
@@ -178,7 +179,10 @@ mod tests {
         let ring = Joints { is_shared: true, ..Joints::ring(2) };
         let (layout, points) = Layout::new(&strips, &ring).unwrap();
         let ring = layout.strips(&points).unwrap();
-        assert_eq!((points.len(), ring[1].control(1), ring[0].control(1)), (10, ring[0].control(0), ring[1].control(0)));
+        assert_eq!(
+            (points.len(), ring[1].control(1), ring[0].control(1)),
+            (10, ring[0].control(0), ring[1].control(0))
+        );
     }
 
     #[test]

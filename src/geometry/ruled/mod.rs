@@ -13,46 +13,44 @@
 //! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
 
 pub mod asymptotic;
-mod bounds;
-pub mod conditions;
-mod coverage;
-mod field;
-mod layout;
-pub mod optimise;
-mod pull;
-pub mod start;
-mod strip;
-pub mod orientation;
-pub mod tangent_section;
-pub mod tracing;
 pub mod boundaries;
 #[cfg(test)]
 mod boundaries_tests;
 mod boundary;
+mod bounds;
+pub mod conditions;
+mod coverage;
+pub mod design;
+pub mod export;
 mod field;
+pub mod file;
+mod layout;
 pub mod level_function;
 #[cfg(test)]
 mod level_function_tests;
 mod level_terms;
+pub mod optimise;
+pub mod orientation;
 pub mod periods;
 pub mod planar_boundaries;
-pub mod spherical_image;
-mod walk;
-pub mod export;
-mod field;
-pub mod file;
 pub mod planks;
+mod pull;
 pub mod report;
+mod ruling_ends;
 pub mod rulings_problem;
+pub mod spherical_image;
+pub mod start;
 mod strip;
+mod system;
+pub mod tangent_section;
+pub mod terms;
+mod thin_plate;
+pub mod tracing;
 pub mod trim;
+mod walk;
 pub mod zebra;
 
 pub use boundary::Boundary;
-mod system;
-pub mod terms;
-mod thin_plate;
-
 pub use bounds::Bounds;
 pub use field::Field;
 pub use layout::Joints;

@@ -85,7 +85,8 @@ impl Model {
 
     fn damp(&mut self) {
         let count = self.gradient.len();
-        let mean = self.entries.iter().filter(|(k, l, _)| k == l).map(|(_, _, value)| value).sum::<f64>() / count.max(1) as f64;
+        let mean = self.entries.iter().filter(|(k, l, _)| k == l).map(|(_, _, value)| value).sum::<f64>()
+            / count.max(1) as f64;
         let least = if mean > 0.0 { DAMPING * mean } else { 1.0 };
         let mut is_there = vec![false; count];
         for (k, l, value) in self.entries.iter_mut().filter(|(k, l, _)| k == l) {

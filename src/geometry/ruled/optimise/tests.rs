@@ -61,9 +61,8 @@ fn deviations(strips: &[Strip], surface: &dyn ReferenceSurface, samples: &[DVec3
     let feet = strips.iter().flat_map(of_strip).map(|p| (p, surface.nearest(p)));
     let there = feet.filter(|(_, foot)| foot.overhang < 1e-9).map(|(p, foot)| p.distance(foot.point));
     let surfaces: Vec<_> = strips.iter().map(|strip| strip.surface().unwrap()).collect();
-    let back = samples.iter().map(|&p| {
-        surfaces.iter().map(|s| s.nearest(p).point.distance(p)).fold(f64::INFINITY, f64::min)
-    });
+    let back =
+        samples.iter().map(|&p| surfaces.iter().map(|s| s.nearest(p).point.distance(p)).fold(f64::INFINITY, f64::min));
     [there.fold(0.0, f64::max), back.fold(0.0, f64::max)]
 }
 
@@ -84,7 +83,12 @@ const BARE: Options = Options {
     tolerance: 1e-12,
 };
 
-fn task<'a>(strips: &'a [Strip], reference: &'a dyn ReferenceSurface, joints: &'a Joints, conditions: &'a [Condition]) -> Task<'a> {
+fn task<'a>(
+    strips: &'a [Strip],
+    reference: &'a dyn ReferenceSurface,
+    joints: &'a Joints,
+    conditions: &'a [Condition],
+) -> Task<'a> {
     Task { strips, joints, reference, cover: &[], conditions }
 }
 
@@ -96,7 +100,11 @@ fn the_saddle_is_one_strip_exactly() {
         let strips = rows(&surface, &[-1.0, 1.0], count, 0.05);
         let conditions = Condition::fixed_ends(&strips);
         let found = optimise(task(&strips, &surface, &Joints::default(), &conditions), &BARE, &mut on).unwrap();
-        eprintln!("{count} {:?} {:#?}", found.stop, found.history.iter().map(|h| (h.value, h.taken, h.moved)).collect::<Vec<_>>());
+        eprintln!(
+            "{count} {:?} {:#?}",
+            found.stop,
+            found.history.iter().map(|h| (h.value, h.taken, h.moved)).collect::<Vec<_>>()
+        );
         assert!(falls(&found));
         assert!(found.last().parts.proximity <= 1e-20, "{:?}", found.history);
         let cover: Vec<DVec3> = surface.mesh(21, 21).unwrap().points;
@@ -112,9 +120,18 @@ fn freeform_width() {
         let ys: Vec<f64> = (0..=count).map(|i| -0.8 + 1.6 * i as f64 / count as f64).collect();
         let strips = rows(&surface, &ys, 11, 0.02);
         let conditions = Condition::fixed_ends(&strips);
-        let found = optimise(task(&strips, &surface, &Joints::chain(count), &conditions), &Options {tolerance: 1e-9, ..Options::default()}, &mut on).unwrap();
+        let found = optimise(
+            task(&strips, &surface, &Joints::chain(count), &conditions),
+            &Options { tolerance: 1e-9, ..Options::default() },
+            &mut on,
+        )
+        .unwrap();
         let cover: Vec<DVec3> = surface.mesh(21, 21).unwrap().points;
         let [there, back] = deviations(&found.strips, &surface, &cover);
-        eprintln!("{count} {expected} {there} {back} {:?} {:#?}", found.stop, found.history.iter().map(|h| (h.value, h.taken, h.moved, h.largest_gap)).collect::<Vec<_>>());
+        eprintln!(
+            "{count} {expected} {there} {back} {:?} {:#?}",
+            found.stop,
+            found.history.iter().map(|h| (h.value, h.taken, h.moved, h.largest_gap)).collect::<Vec<_>>()
+        );
     }
 }
