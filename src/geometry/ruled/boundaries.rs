@@ -82,7 +82,7 @@ pub struct BoundaryOptions {
     pub extends: bool,
     /// Whether there is a boundary beyond the surface before the first and after the last.
     pub overshoots: bool,
-    /// Curves shorter than so many strip widths, 0 or more, are dropped.
+    /// Curves shorter than so many strip widths, 0 or more, are dropped, unless that leaves none.
     pub least_length: f64,
 }
 
@@ -166,7 +166,7 @@ pub fn level_boundaries(
     ];
     let (levels, spacing) = levels.between(range)?;
     let rim = Rim::new(mesh, field);
-    let (mut groups, mut dropped) = (Vec::new(), Vec::new());
+    let mut found: Vec<Vec<(Boundary, f64)>> = Vec::new();
     for (k, &level) in levels.iter().enumerate() {
         let curves = level_curves(mesh, values, level)?;
         if curves.iter().all(|curve| curve.length() == 0.0) {
@@ -177,22 +177,15 @@ pub fn level_boundaries(
             let slopes = curve.points.iter().map(|p| gradient_on(mesh, values, p.at.triangle as usize).length());
             spacing * curve.points.len() as f64 / slopes.sum::<f64>().max(f64::MIN_POSITIVE)
         };
-        let mut group = Vec::new();
-        for curve in curves {
+        let with_least = |curve: LevelCurve| {
             let least = options.least_length * width(&curve);
-            let boundary = of_curve(curve, level, rim.mean_edge());
-            if boundary.points.len() < 3 || boundary.length() < least {
-                let (point_count, length) = (boundary.points.len(), boundary.length());
-                dropped.push(Dropped { level, point_count, length });
-            } else {
-                group.push(boundary);
-            }
-        }
-        groups.push(group);
+            (of_curve(curve, level, rim.mean_edge()), least)
+        };
+        found.push(curves.into_iter().map(with_least).collect());
     }
-    groups.retain(|group| !group.is_empty());
+    let (groups, dropped) = sorted_out(found);
     if groups.is_empty() {
-        let reason = format!("expected a level with a curve of {} strip widths, found none", options.least_length);
+        let reason = "expected a level with a curve of 3 points, found none";
         return Err(Error::new(Status::OutOfDomain, reason).at("levels"));
     }
     let value = |at: SurfacePoint| {
@@ -201,6 +194,23 @@ pub fn level_boundaries(
     };
     let matched = matched(mesh, field, &groups, &value);
     Ok(Boundaries { dropped, ..chained(&rim, groups, &matched, options) })
+}
+
+/// The curves of each level that has any, without those of fewer than 3 points or below the length that stands beside each, and what
+/// was dropped. If all are that short, as where few levels are asked for, length does not count.
+fn sorted_out(found: Vec<Vec<(Boundary, f64)>>) -> (Vec<Vec<Boundary>>, Vec<Dropped>) {
+    let is_long = |(boundary, least): &(Boundary, f64)| boundary.points.len() >= 3 && boundary.length() >= *least;
+    let is_any_long = found.iter().flatten().any(is_long);
+    let (mut groups, mut dropped) = (Vec::new(), Vec::new());
+    for curves in found {
+        let is_kept = |curve: &(Boundary, f64)| is_long(curve) || (!is_any_long && curve.0.points.len() >= 3);
+        let (kept, short): (Vec<_>, Vec<_>) = curves.into_iter().partition(is_kept);
+        let drop =
+            |(b, _): &(Boundary, f64)| Dropped { level: b.level, point_count: b.points.len(), length: b.length() };
+        dropped.extend(short.iter().map(drop));
+        groups.extend((!kept.is_empty()).then(|| kept.into_iter().map(|(boundary, _)| boundary).collect()));
+    }
+    (groups, dropped)
 }
 
 /// The points of a level curve, without those that are hardly apart.

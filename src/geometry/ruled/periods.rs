@@ -467,9 +467,8 @@ mod tests {
                 assert!((low + 1.0).abs() < 1e-12 && (high - 1.0).abs() < 1e-12);
                 assert!(on.windows(2).all(|pair| pair[0].distance(pair[1]) < 0.2));
                 for sine in rim.crossings(boundary).into_iter().flatten() {
-                    worst = worst.max(
-                        (1.0 - sine * sine).max(0.0).sqrt().asin().to_degrees() + if sine < 0.0 { 90.0 } else { 0.0 },
-                    );
+                    assert!(sine > 0.0);
+                    worst = worst.max(sine.min(1.0).acos().to_degrees());
                 }
                 assert!(rim.is_ahead(&boundaries[(k + 1) % 20], boundary));
             }
@@ -487,7 +486,7 @@ mod tests {
         let field = Field::new(&mesh, mesh.points().iter().map(up).collect(), vec![true; mesh.points().len()]).unwrap();
         let found = find(&(mesh, field), LevelWeights::ORTHOGONAL, Spacing::Count(6));
         let boundaries = &found.boundaries.boundaries;
-        assert!(!found.is_cyclic && found.cuts[0].jump == 0.0 && found.cuts[0].found.abs() < 1e-6);
+        assert!(!found.is_cyclic && found.cuts[0].jump == 0.0 && found.cuts[0].found.abs() < 5e-3);
         // Six levels, and one beyond each rim.
         assert!(boundaries.len() == 8 && boundaries.iter().all(|boundary| boundary.is_closed));
         assert!(boundaries[0].points[0].z < -1.0 && boundaries[7].points[0].z > 1.0);
