@@ -148,7 +148,7 @@ impl Boundaries {
 /// the next level to which the field leads, if each of both has one such; otherwise the level is listed as unmatched.
 ///
 /// # Errors
-/// Not one value for each point or one that is not finite (`values`, `values[i]`); levels or options out of range (`levels`,
+/// Not one value for each point or one that is not finite (`values`, `values[i]`); a field of another mesh (`field`); levels or options out of range (`levels`,
 /// `levels[k]`, `options.least_length`). Status `OutOfDomain`: a level beyond the values, or whose curves are points (`levels[k]`),
 /// or no curve is long enough (`levels`).
 pub fn level_boundaries(
@@ -159,6 +159,7 @@ pub fn level_boundaries(
     options: &BoundaryOptions,
 ) -> Result<Boundaries> {
     options.check()?;
+    field.check(mesh)?;
     level_curves(mesh, values, 0.0)?;
     let range = [
         values.iter().copied().fold(f64::INFINITY, f64::min),
@@ -327,7 +328,7 @@ pub struct Drawn {
 /// since where a curve ends was decided by who drew it.
 ///
 /// # Errors
-/// No curve (`curves`); fewer than 2 points, or 3 of a closed one, points that are not finite, coincide with the one before, or
+/// No curve (`curves`); a field of another mesh (`field`); fewer than 2 points, or 3 of a closed one, points that are not finite, coincide with the one before, or
 /// whose nearest ones do (`curves[k]`, `curves[k].points[i]`). Status `Infeasible`: the field is not known along a curve or crosses
 /// it from both sides (`curves[k]`), or a curve is behind the one before it (`curves[k]`).
 pub fn drawn_boundaries(
@@ -341,6 +342,7 @@ pub fn drawn_boundaries(
         return Err(Error::new(Status::InvalidArgumentLength, "expected at least 1, found none").at("curves"));
     }
     let mesh = surface.mesh();
+    field.check(mesh)?;
     let rim = Rim::new(mesh, field);
     let mut chain: Vec<Boundary> = Vec::with_capacity(curves.len());
     for (k, curve) in curves.iter().enumerate() {

@@ -116,6 +116,9 @@ fn levels_beyond_the_values_and_points_are_refused_by_name() {
     let options = BoundaryOptions::default();
     assert_eq!(place(&f[1..], Levels::Count(3), &options), "values");
     assert_eq!(place(&f, Levels::Count(0), &options), "levels");
+    let (other, _) = plane(11, |_, _| DVec3::X);
+    let error = level_boundaries(&other, &field, &f[..121], &Levels::Count(3), &options).unwrap_err();
+    assert_eq!(error.place(), "field");
     assert_eq!(place(&f, Levels::Width(-1.0), &options), "levels");
     assert_eq!(place(&f, Levels::Count(3), &BoundaryOptions { least_length: -1.0, ..options }), "options.least_length");
     assert_eq!(place(&[2.0; 144], Levels::Count(3), &options), "levels[0]");

@@ -315,33 +315,3 @@ fn conoidal_level_curves_of_a_catenoid_have_axes() {
         assert!(found.critical.is_empty());
     }
 }
-
-#[test]
-#[ignore = "timing"]
-fn timing() {
-    use super::boundaries::{BoundaryOptions, Levels, level_boundaries};
-    let n = 160;
-    for (name, weights) in [
-        ("orthogonal", LevelWeights::ORTHOGONAL),
-        ("equidistant", LevelWeights::EQUIDISTANT),
-        ("geodesic", LevelWeights::GEODESIC),
-        ("conoidal", LevelWeights::CONOIDAL),
-    ] {
-        let (mesh, field) = catenoid(n, [0.2, 1.2], 1.0);
-        let start = std::time::Instant::now();
-        let found = solve(&mesh, &field, weights);
-        let solved = start.elapsed();
-        let start = std::time::Instant::now();
-        let b =
-            level_boundaries(&mesh, &field, &found.values, &Levels::Count(30), &BoundaryOptions::default()).unwrap();
-        eprintln!(
-            "{name} {} triangles: {:?} {} its {:?}; boundaries {} {:?}",
-            mesh.triangles().len(),
-            solved,
-            found.history.len(),
-            found.stop,
-            b.boundaries.len(),
-            start.elapsed()
-        );
-    }
-}

@@ -16,6 +16,7 @@ pub mod boundaries;
 #[cfg(test)]
 mod boundaries_tests;
 mod boundary;
+mod cuts;
 mod field;
 pub mod level_function;
 #[cfg(test)]

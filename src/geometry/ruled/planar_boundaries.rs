@@ -60,7 +60,7 @@ pub struct PlanarBoundaries {
 ///
 /// # Errors
 /// No plane, a normal of length 0, or a number that is not finite (`planes`, `planes[k]`); options out of range
-/// (`options.least_angle_rad`). Status `NoIntersection`: a plane misses the surface, or touches it (`planes[k]`). `Infeasible`: a
+/// (`options.least_angle_rad`); a field of another mesh (`field`). Status `NoIntersection`: a plane misses the surface, or touches it (`planes[k]`). `Infeasible`: a
 /// plane is not ahead of the one before it along the field, its section runs along the field or where it is not known, or, if that
 /// is refused, crosses it at too small an angle (`planes[k]`).
 pub fn planar_boundaries(
@@ -70,6 +70,7 @@ pub fn planar_boundaries(
     options: &PlanarOptions,
 ) -> Result<PlanarBoundaries> {
     options.boundaries.check()?;
+    field.check(mesh)?;
     if !(0.0..=std::f64::consts::FRAC_PI_2).contains(&options.least_angle_rad) {
         let reason = format!("expected an angle from 0 to π/2, found {}", options.least_angle_rad);
         return Err(Error::new(Status::InvalidValue, reason).at("options.least_angle_rad"));

@@ -92,8 +92,9 @@ impl SphericalImage {
     /// The image of a field. Triangles with a corner where the field is not known have none.
     ///
     /// # Errors
-    /// Status `CurvatureSign`: the field is known on no triangle; the place is `field`.
+    /// The field is of another mesh, or, status `CurvatureSign`, known on no triangle; the place is `field`.
     pub fn new(mesh: &TriangleMesh, field: &Field) -> Result<Self> {
+        field.check(mesh)?;
         let count = mesh.triangles().len();
         let corners = |t: usize| mesh.triangles()[t].map(|i| field.directions()[i as usize]);
         let is_known = |t: usize| mesh.triangles()[t].iter().all(|&i| field.is_known()[i as usize]);
@@ -184,9 +185,10 @@ impl Axis {
         Some(Self { direction, error, flatness: if first > 0.0 { last / first } else { 0.0 } })
     }
 
-    /// The axis of the field at some points of the mesh; points where it is not known are left out. For a strip, give the points of
+    /// The axis of the field at some points of its mesh; points where it is not known are left out. For a strip, give the points of
     /// both boundaries.
     pub fn of_points(mesh: &TriangleMesh, field: &Field, points: &[SurfacePoint]) -> Option<Self> {
+        field.check(mesh).ok()?;
         let direction = |at: &SurfacePoint| {
             let corners = mesh.triangles().get(at.triangle as usize)?.map(|i| i as usize);
             let is_known = (0..3).all(|k| at.weights[k] == 0.0 || field.is_known()[corners[k]]);
@@ -201,8 +203,9 @@ impl Axis {
 /// boundary, it makes rulings that begin there parallel to one plane.
 ///
 /// # Errors
-/// An axis that is not finite or zero (`axis`). Status `NoIntersection`: the image does not meet the great circle (`axis`).
+/// An axis that is not finite or zero (`axis`); a field of another mesh (`field`). Status `NoIntersection`: the image does not meet the great circle (`axis`).
 pub fn great_circle(mesh: &TriangleMesh, field: &Field, axis: DVec3) -> Result<Vec<LevelCurve>> {
+    field.check(mesh)?;
     let Some(axis) = axis.try_normalize().filter(|axis| axis.is_finite()) else {
         let reason = format!("expected a direction, found {axis}");
         return Err(Error::new(Status::InvalidValue, reason).at("axis"));
