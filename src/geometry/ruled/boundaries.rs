@@ -222,6 +222,35 @@ pub(super) fn of_curve(curve: LevelCurve, level: f64, mean_edge: f64) -> Boundar
     boundary
 }
 
+/// The longest of some curves, the first of several; the others are added to those dropped. None without one of two points.
+pub(super) fn longest(
+    curves: Vec<LevelCurve>,
+    number: usize,
+    mean_edge: f64,
+    dropped: &mut Vec<Dropped>,
+) -> Option<Boundary> {
+    let mut boundaries: Vec<Boundary> =
+        curves.into_iter().map(|curve| of_curve(curve, number as f64, mean_edge)).collect();
+    let length = |i: &usize| boundaries[*i].length();
+    let longest = (0..boundaries.len()).rev().max_by(|a, b| length(a).total_cmp(&length(b)));
+    let found = boundaries.remove(longest.filter(|&i| boundaries[i].points.len() > 1)?);
+    let drop = |b: &Boundary| Dropped { level: b.level, point_count: b.points.len(), length: b.length() };
+    dropped.extend(boundaries.iter().map(drop));
+    Some(found)
+}
+
+/// Boundaries given along the field or against it, along it; otherwise the number (`level`) of the first that is out of order.
+pub(super) fn ordered(rim: &Rim<'_>, mut chain: Vec<Boundary>) -> std::result::Result<Vec<Boundary>, usize> {
+    let is_against = chain.len() > 1 && !rim.is_ahead(&chain[1], &chain[0]);
+    if is_against {
+        chain.reverse();
+    }
+    match (1..chain.len()).find(|&i| !rim.is_ahead(&chain[i], &chain[i - 1])) {
+        Some(i) => Err(chain[if is_against { i - 1 } else { i }].level as usize),
+        None => Ok(chain),
+    }
+}
+
 /// What follows a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {

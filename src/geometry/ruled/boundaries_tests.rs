@@ -196,6 +196,7 @@ fn plane_sections_stay_in_their_planes_also_beyond_the_surface() {
     assert!(
         found.planes[0].unwrap().offset < -1.0 && found.planes[4].unwrap().offset > 1.0 && found.oblique.is_empty()
     );
+    assert!(covers(&found.boundaries, &mesh, &field));
     // The least angle, over the points of the section, from its formula: where n·(x, y, xy) = d it runs along n × normal.
     let angle = |k: usize| {
         let on = found.boundaries.boundaries[k + 1].points.iter().zip(&found.boundaries.boundaries[k + 1].on_surface);

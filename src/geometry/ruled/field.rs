@@ -112,7 +112,7 @@ mod tests {
             Field::new(&mesh, directions.to_vec(), is_known.to_vec()).unwrap_err().place().to_owned()
         };
         assert_eq!(place(&directions[1..], &vec![true; count]), "directions");
-        assert_eq!(place(&directions, &vec![true; 3]), "is_known");
+        assert_eq!(place(&directions, &[true; 3]), "is_known");
         let mut long = directions;
         long[3] *= 1.1;
         assert_eq!(place(&long, &vec![true; count]), "directions[3]");

@@ -5,8 +5,10 @@ use std::ops::ControlFlow;
 use glam::{DVec2, DVec3};
 
 use super::Field;
+use super::boundaries::BoundaryOptions;
+use super::great_circles::{great_circle, great_circle_boundaries};
 use super::level_function::{LevelFunction, LevelOptions, LevelWeights, level_function};
-use super::spherical_image::{Axis, ImageKind, SphericalImage, great_circle};
+use super::spherical_image::{Axis, ImageKind, SphericalImage};
 use crate::error::Status;
 use crate::linalg::gauss_newton::{Progress, Stop};
 use crate::mesh::level_curves::level_curves;
@@ -286,6 +288,28 @@ fn great_circles_are_where_the_field_is_orthogonal_to_their_axes() {
     // Half of the directions' range: nowhere orthogonal to one in their middle.
     let middle: DVec3 = field.directions().iter().sum();
     assert_eq!(refused(middle), Status::NoIntersection);
+    // Axes of the level curves of a conoidal function, chosen by hand: boundaries near them, in either order.
+    let levels = solve(&mesh, &field, LevelWeights::CONOIDAL).values;
+    let top = levels.iter().copied().fold(0.0, f64::max);
+    let axis = |k: usize| {
+        let curves = level_curves(&mesh, &levels, top * k as f64 / 10.0).unwrap();
+        let at: Vec<SurfacePoint> = curves[0].points.iter().map(|p| p.at).collect();
+        Axis::of_points(&mesh, &field, &at).unwrap().direction
+    };
+    let axes = [4, 5, 6].map(axis);
+    let options = BoundaryOptions::default();
+    let found = great_circle_boundaries(&mesh, &field, &axes, &options).unwrap();
+    assert_eq!((found.boundaries.len(), found.strips.len()), (5, 4));
+    for (boundary, axis) in found.boundaries[1..4].iter().zip(axes) {
+        let at: Vec<SurfacePoint> = boundary.on_surface.iter().copied().flatten().collect();
+        assert!(Axis::of_points(&mesh, &field, &at).unwrap().direction.cross(axis).length() < 1e-9);
+    }
+    let back = great_circle_boundaries(&mesh, &field, &[axes[2], axes[1], axes[0]], &options).unwrap();
+    assert_eq!(back.boundaries[2].points, found.boundaries[2].points);
+    let error = great_circle_boundaries(&mesh, &field, &[axes[0], axes[2], axes[1]], &options).unwrap_err();
+    assert_eq!((error.status(), error.place()), (Status::Infeasible, "axes[2]"));
+    let error = great_circle_boundaries(&mesh, &field, &[axes[0], DVec3::NAN], &options).unwrap_err();
+    assert_eq!((error.status(), error.place()), (Status::InvalidValue, "axes[1]"));
 }
 
 fn conoidality(mesh: &TriangleMesh, field: &Field, values: &[f64]) -> f64 {

@@ -18,6 +18,7 @@ mod boundaries_tests;
 mod boundary;
 mod cuts;
 mod field;
+pub mod great_circles;
 pub mod level_function;
 #[cfg(test)]
 mod level_function_tests;
@@ -25,6 +26,7 @@ mod level_terms;
 pub mod periods;
 pub mod planar_boundaries;
 pub mod spherical_image;
+mod stitching;
 mod walk;
 
 pub use boundary::Boundary;

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::Field;
-use super::boundaries::{Boundaries, BoundaryOptions, Dropped, of_curve};
+use super::boundaries::{Boundaries, BoundaryOptions, Dropped, longest, ordered};
 use super::boundary::{Boundary, Rim};
 use crate::error::{Error, Result, Status};
 use crate::mesh::TriangleMesh;
@@ -98,16 +98,10 @@ pub fn planar_boundaries(
         angles_rad.push(angle);
         chain.push(boundary);
     }
-    // Planes may come against the field.
-    let is_against = chain.len() > 1 && !rim.is_ahead(&chain[1], &chain[0]);
-    if is_against {
-        chain.reverse();
-    }
-    if let Some(i) = (1..chain.len()).find(|&i| !rim.is_ahead(&chain[i], &chain[i - 1])) {
+    let chain = ordered(&rim, chain).map_err(|k| {
         let reason = "expected planes that follow each other along the field, or against it";
-        let k = chain[if is_against { i - 1 } else { i }].level;
-        return Err(Error::new(Status::Infeasible, reason).at(format!("planes[{k}]")));
-    }
+        Error::new(Status::Infeasible, reason).at(format!("planes[{k}]"))
+    })?;
     let overshoots = [options.boundaries.overshoots; 2];
     let mut boundaries = rim.complete(chain, false, options.boundaries.extends, overshoots);
     let planes = flatten(&mut boundaries, planes);
@@ -130,21 +124,9 @@ fn section(
     }
     let values: Vec<f64> = mesh.points().iter().map(|p| plane.normal.dot(*p) / length).collect();
     let curves = level_curves(mesh, &values, plane.offset / length)?;
-    let mut boundaries: Vec<Boundary> =
-        curves.into_iter().map(|curve| of_curve(curve, k as f64, rim.mean_edge())).collect();
-    let length = |i: &usize| boundaries[*i].length();
-    // The first of several that are equally long.
-    let longest = (0..boundaries.len()).rev().max_by(|a, b| length(a).total_cmp(&length(b)));
-    let Some(longest) = longest.filter(|&i| boundaries[i].points.len() > 1) else {
-        return Err(Error::new(
-            Status::NoIntersection,
-            "expected a plane that cuts the surface, found one that does not",
-        ));
-    };
-    let found = boundaries.remove(longest);
-    let drop = |b: &Boundary| Dropped { level: k as f64, point_count: b.points.len(), length: b.length() };
-    dropped.extend(boundaries.iter().map(drop));
-    Ok(found)
+    longest(curves, k, rim.mean_edge(), dropped).ok_or_else(|| {
+        Error::new(Status::NoIntersection, "expected a plane that cuts the surface, found one that does not")
+    })
 }
 
 /// Moves the points of the boundaries beyond the surface along their ways into a plane parallel to that of the boundary that they

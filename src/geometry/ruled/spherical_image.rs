@@ -21,7 +21,6 @@ use super::level_terms::Metric;
 use crate::error::{Error, Result, Status};
 use crate::linalg::dense::Svd;
 use crate::mesh::TriangleMesh;
-use crate::mesh::level_curves::{LevelCurve, level_curves_within};
 use crate::mesh::operators::{gradients_of_corners, mixed_parts};
 use crate::mesh::triangles::{SurfacePoint, blend};
 
@@ -197,25 +196,4 @@ impl Axis {
         };
         Self::new(&points.iter().filter_map(direction).collect::<Vec<_>>())
     }
-}
-
-/// The curves on the mesh where the field is orthogonal to `axis`: what a great circle of the sphere is the image of. Given as a
-/// boundary, it makes rulings that begin there parallel to one plane.
-///
-/// # Errors
-/// An axis that is not finite or zero (`axis`); a field of another mesh (`field`). Status `NoIntersection`: the image does not meet the great circle (`axis`).
-pub fn great_circle(mesh: &TriangleMesh, field: &Field, axis: DVec3) -> Result<Vec<LevelCurve>> {
-    field.check(mesh)?;
-    let Some(axis) = axis.try_normalize().filter(|axis| axis.is_finite()) else {
-        let reason = format!("expected a direction, found {axis}");
-        return Err(Error::new(Status::InvalidValue, reason).at("axis"));
-    };
-    let values: Vec<f64> = field.directions().iter().map(|a| a.dot(axis)).collect();
-    let is_known = |t: usize| mesh.triangles()[t].iter().all(|&i| field.is_known()[i as usize]);
-    let curves = level_curves_within(mesh, &values, 0.0, is_known)?;
-    if curves.is_empty() {
-        let reason = "the field is nowhere orthogonal to this direction";
-        return Err(Error::new(Status::NoIntersection, reason).at("axis"));
-    }
-    Ok(curves)
 }
