@@ -235,3 +235,50 @@ fn plane_sections_stay_in_their_planes_also_beyond_the_surface() {
     let wrong = PlanarOptions { least_angle_rad: 2.0, ..options };
     assert_eq!(refused(&planes, &wrong), (Status::InvalidValue, "options.least_angle_rad".into()));
 }
+
+#[test]
+fn whatever_the_function_and_the_field_what_comes_back_is_finite() {
+    // Sums of waves by a seed: closed curves, saddles, parts where the field is not known or runs along the levels.
+    for seed in 0..40 {
+        let wave = |k: f64, x: f64, y: f64| (k * 1.7 + (3.0 + k) * x).sin() + (k * 0.9 - (2.0 + 1.3 * k) * y).cos();
+        let s = f64::from(seed) * 0.37;
+        let (mesh, field) = plane(15, |x, y| {
+            let slope = DVec3::new(wave(s, x, y), wave(s + 1.0, y, x), 0.0);
+            if slope.length() < 0.4 { DVec3::ZERO } else { slope }
+        });
+        let f = values(&mesh, |x, y| wave(s + 0.5, x, y) + 0.5 * wave(s, y, x));
+        for levels in [Levels::Count(7), Levels::Width(0.3)] {
+            let options = BoundaryOptions { least_length: if seed % 2 == 0 { 0.0 } else { 2.0 }, ..Default::default() };
+            let found = level_boundaries(&mesh, &field, &f, &levels, &options).unwrap();
+            for boundary in &found.boundaries {
+                assert!(boundary.points.len() >= 3 && boundary.points.len() == boundary.on_surface.len());
+                assert!(boundary.points.iter().all(|p| p.is_finite() && p.length() < 20.0), "{seed}");
+                assert!(boundary.points.windows(2).all(|pair| pair[0] != pair[1]), "{seed}");
+            }
+            assert!(found.strips.iter().flatten().all(|&k| k < found.boundaries.len()));
+            assert_eq!(found.check().is_ok(), found.unmatched.is_empty());
+            assert_eq!(level_boundaries(&mesh, &field, &f, &levels, &options).unwrap(), found);
+        }
+    }
+}
+
+#[test]
+fn closed_curves_may_be_drawn_around_a_hole() {
+    let ring =
+        parametric_surface(61, 8, [0.0, 6.2], [0.5, 1.5], |u, v| v * DVec3::new(u.cos(), -u.sin(), 0.0)).unwrap();
+    let mesh = TriangleMesh::new(&ring).unwrap();
+    let field = Field::new(&mesh, mesh.points().iter().map(|p| p.normalize()).collect(), vec![true; 61 * 8]).unwrap();
+    let circle = |radius: f64| {
+        let at = |k: usize| {
+            let angle = std::f64::consts::TAU * k as f64 / 40.0;
+            radius * DVec3::new(angle.cos(), angle.sin(), 0.0)
+        };
+        Drawn { points: (0..40).map(at).collect(), is_closed: true }
+    };
+    let options = BoundaryOptions::default();
+    let found = drawn_boundaries(&ReferenceMesh::new(&mesh), &field, &[circle(0.7), circle(1.1)], &options).unwrap();
+    assert!(found.boundaries.iter().all(|b| b.is_closed && b.points.len() == 40));
+    let error =
+        drawn_boundaries(&ReferenceMesh::new(&mesh), &field, &[circle(1.1), circle(0.7)], &options).unwrap_err();
+    assert_eq!((error.status(), error.place()), (Status::Infeasible, "curves[1]"));
+}

@@ -248,9 +248,12 @@ impl<'a> Rim<'a> {
     fn overshoot(&self, from: &Boundary, side: usize, reaches: [f64; 2]) -> Option<Boundary> {
         let sign = if side == 0 { -1.0 } else { 1.0 };
         let count = from.points.len();
-        let ways =
-            from.on_surface.iter().map(|at| at.map(|at| walk(self.mesh, self.field, at, sign, &mut |_| false).length));
-        let mut ways: Vec<Option<f64>> = ways.collect();
+        // In a straight line, and none where the field goes in circles.
+        let way = |at: SurfacePoint| {
+            let walked = walk(self.mesh, self.field, at, sign, &mut |_| false);
+            walked.is_out.then(|| self.mesh.position(walked.end).distance(self.mesh.position(at)))
+        };
+        let mut ways: Vec<Option<f64>> = from.on_surface.iter().map(|at| way((*at)?)).collect();
         for (i, reach) in [(0, reaches[0]), (count - 1, reaches[1])] {
             ways[i] = Some(ways[i].unwrap_or(0.0).max(reach));
         }

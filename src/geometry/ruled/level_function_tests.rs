@@ -339,3 +339,14 @@ fn conoidal_level_curves_of_a_catenoid_have_axes() {
         assert!(found.critical.is_empty());
     }
 }
+
+#[test]
+fn any_number_of_threads_finds_the_same_bits() {
+    let (mesh, field) = catenoid(51, [0.2, 1.2], 1.0);
+    let weights = LevelWeights { geodesic: 0.3, ..LevelWeights::EQUIDISTANT };
+    let with_threads = |count: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+        pool.install(|| solve(&mesh, &field, weights).values)
+    };
+    assert_eq!(with_threads(1), with_threads(3));
+}
