@@ -82,7 +82,7 @@ pub struct BoundaryOptions {
     pub extends: bool,
     /// Whether there is a boundary beyond the surface before the first and after the last.
     pub overshoots: bool,
-    /// Curves shorter than so many strip widths, 0 or more, are dropped.
+    /// Curves shorter than so many strip widths, 0 or more, are dropped, unless that leaves none.
     pub least_length: f64,
 }
 
@@ -148,7 +148,7 @@ impl Boundaries {
 /// the next level to which the field leads, if each of both has one such; otherwise the level is listed as unmatched.
 ///
 /// # Errors
-/// Not one value for each point or one that is not finite (`values`, `values[i]`); levels or options out of range (`levels`,
+/// Not one value for each point or one that is not finite (`values`, `values[i]`); a field of another mesh (`field`); levels or options out of range (`levels`,
 /// `levels[k]`, `options.least_length`). Status `OutOfDomain`: a level beyond the values, or whose curves are points (`levels[k]`),
 /// or no curve is long enough (`levels`).
 pub fn level_boundaries(
@@ -159,6 +159,7 @@ pub fn level_boundaries(
     options: &BoundaryOptions,
 ) -> Result<Boundaries> {
     options.check()?;
+    field.check(mesh)?;
     level_curves(mesh, values, 0.0)?;
     let range = [
         values.iter().copied().fold(f64::INFINITY, f64::min),
@@ -166,7 +167,7 @@ pub fn level_boundaries(
     ];
     let (levels, spacing) = levels.between(range)?;
     let rim = Rim::new(mesh, field);
-    let (mut groups, mut dropped) = (Vec::new(), Vec::new());
+    let mut found: Vec<Vec<(Boundary, f64)>> = Vec::new();
     for (k, &level) in levels.iter().enumerate() {
         let curves = level_curves(mesh, values, level)?;
         if curves.iter().all(|curve| curve.length() == 0.0) {
@@ -177,22 +178,15 @@ pub fn level_boundaries(
             let slopes = curve.points.iter().map(|p| gradient_on(mesh, values, p.at.triangle as usize).length());
             spacing * curve.points.len() as f64 / slopes.sum::<f64>().max(f64::MIN_POSITIVE)
         };
-        let mut group = Vec::new();
-        for curve in curves {
+        let with_least = |curve: LevelCurve| {
             let least = options.least_length * width(&curve);
-            let boundary = of_curve(curve, level, rim.mean_edge());
-            if boundary.points.len() < 3 || boundary.length() < least {
-                let (point_count, length) = (boundary.points.len(), boundary.length());
-                dropped.push(Dropped { level, point_count, length });
-            } else {
-                group.push(boundary);
-            }
-        }
-        groups.push(group);
+            (of_curve(curve, level, rim.mean_edge()), least)
+        };
+        found.push(curves.into_iter().map(with_least).collect());
     }
-    groups.retain(|group| !group.is_empty());
+    let (groups, dropped) = sorted_out(found);
     if groups.is_empty() {
-        let reason = format!("expected a level with a curve of {} strip widths, found none", options.least_length);
+        let reason = "expected a level with a curve of 3 points, found none";
         return Err(Error::new(Status::OutOfDomain, reason).at("levels"));
     }
     let value = |at: SurfacePoint| {
@@ -203,12 +197,58 @@ pub fn level_boundaries(
     Ok(Boundaries { dropped, ..chained(&rim, groups, &matched, options) })
 }
 
+/// The curves of each level that has any, without those of fewer than 3 points or below the length that stands beside each, and what
+/// was dropped. If all are that short, as where few levels are asked for, length does not count.
+fn sorted_out(found: Vec<Vec<(Boundary, f64)>>) -> (Vec<Vec<Boundary>>, Vec<Dropped>) {
+    let is_long = |(boundary, least): &(Boundary, f64)| boundary.points.len() >= 3 && boundary.length() >= *least;
+    let is_any_long = found.iter().flatten().any(is_long);
+    let (mut groups, mut dropped) = (Vec::new(), Vec::new());
+    for curves in found {
+        let is_kept = |curve: &(Boundary, f64)| is_long(curve) || (!is_any_long && curve.0.points.len() >= 3);
+        let (kept, short): (Vec<_>, Vec<_>) = curves.into_iter().partition(is_kept);
+        let drop =
+            |(b, _): &(Boundary, f64)| Dropped { level: b.level, point_count: b.points.len(), length: b.length() };
+        dropped.extend(short.iter().map(drop));
+        groups.extend((!kept.is_empty()).then(|| kept.into_iter().map(|(boundary, _)| boundary).collect()));
+    }
+    (groups, dropped)
+}
+
 /// The points of a level curve, without those that are hardly apart.
 pub(super) fn of_curve(curve: LevelCurve, level: f64, mean_edge: f64) -> Boundary {
     let (points, at) = curve.points.iter().map(|point| (point.position, Some(point.at))).unzip();
     let mut boundary = Boundary { points, on_surface: at, is_closed: curve.is_closed, level };
     boundary.merge(mean_edge);
     boundary
+}
+
+/// The longest of some curves, the first of several; the others are added to those dropped. None without one of two points.
+pub(super) fn longest(
+    curves: Vec<LevelCurve>,
+    number: usize,
+    mean_edge: f64,
+    dropped: &mut Vec<Dropped>,
+) -> Option<Boundary> {
+    let mut boundaries: Vec<Boundary> =
+        curves.into_iter().map(|curve| of_curve(curve, number as f64, mean_edge)).collect();
+    let length = |i: &usize| boundaries[*i].length();
+    let longest = (0..boundaries.len()).rev().max_by(|a, b| length(a).total_cmp(&length(b)));
+    let found = boundaries.remove(longest.filter(|&i| boundaries[i].points.len() > 1)?);
+    let drop = |b: &Boundary| Dropped { level: b.level, point_count: b.points.len(), length: b.length() };
+    dropped.extend(boundaries.iter().map(drop));
+    Some(found)
+}
+
+/// Boundaries given along the field or against it, along it; otherwise the number (`level`) of the first that is out of order.
+pub(super) fn ordered(rim: &Rim<'_>, mut chain: Vec<Boundary>) -> std::result::Result<Vec<Boundary>, usize> {
+    let is_against = chain.len() > 1 && !rim.is_ahead(&chain[1], &chain[0]);
+    if is_against {
+        chain.reverse();
+    }
+    match (1..chain.len()).find(|&i| !rim.is_ahead(&chain[i], &chain[i - 1])) {
+        Some(i) => Err(chain[if is_against { i - 1 } else { i }].level as usize),
+        None => Ok(chain),
+    }
 }
 
 /// What follows a curve.
@@ -317,7 +357,7 @@ pub struct Drawn {
 /// since where a curve ends was decided by who drew it.
 ///
 /// # Errors
-/// No curve (`curves`); fewer than 2 points, or 3 of a closed one, points that are not finite, coincide with the one before, or
+/// No curve (`curves`); a field of another mesh (`field`); fewer than 2 points, or 3 of a closed one, points that are not finite, coincide with the one before, or
 /// whose nearest ones do (`curves[k]`, `curves[k].points[i]`). Status `Infeasible`: the field is not known along a curve or crosses
 /// it from both sides (`curves[k]`), or a curve is behind the one before it (`curves[k]`).
 pub fn drawn_boundaries(
@@ -331,6 +371,7 @@ pub fn drawn_boundaries(
         return Err(Error::new(Status::InvalidArgumentLength, "expected at least 1, found none").at("curves"));
     }
     let mesh = surface.mesh();
+    field.check(mesh)?;
     let rim = Rim::new(mesh, field);
     let mut chain: Vec<Boundary> = Vec::with_capacity(curves.len());
     for (k, curve) in curves.iter().enumerate() {

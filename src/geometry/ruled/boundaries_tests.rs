@@ -116,13 +116,16 @@ fn levels_beyond_the_values_and_points_are_refused_by_name() {
     let options = BoundaryOptions::default();
     assert_eq!(place(&f[1..], Levels::Count(3), &options), "values");
     assert_eq!(place(&f, Levels::Count(0), &options), "levels");
+    let (other, _) = plane(11, |_, _| DVec3::X);
+    let error = level_boundaries(&other, &field, &f[..121], &Levels::Count(3), &options).unwrap_err();
+    assert_eq!(error.place(), "field");
     assert_eq!(place(&f, Levels::Width(-1.0), &options), "levels");
     assert_eq!(place(&f, Levels::Count(3), &BoundaryOptions { least_length: -1.0, ..options }), "options.least_length");
     assert_eq!(place(&[2.0; 144], Levels::Count(3), &options), "levels[0]");
     // A small circle about the top is dropped and listed; it is no reason to refuse the others.
-    let found = level_boundaries(&mesh, &field, &f, &Levels::Values(vec![-0.3, -0.2, -0.02]), &options).unwrap();
+    let found = level_boundaries(&mesh, &field, &f, &Levels::Values(vec![-0.3, -0.2, -0.05]), &options).unwrap();
     assert!(
-        found.dropped.len() == 1 && found.dropped[0].level == -0.02 && found.boundaries.iter().any(|b| b.is_closed)
+        found.dropped.len() == 1 && found.dropped[0].level == -0.05 && found.boundaries.iter().any(|b| b.is_closed)
     );
 }
 
@@ -193,6 +196,7 @@ fn plane_sections_stay_in_their_planes_also_beyond_the_surface() {
     assert!(
         found.planes[0].unwrap().offset < -1.0 && found.planes[4].unwrap().offset > 1.0 && found.oblique.is_empty()
     );
+    assert!(covers(&found.boundaries, &mesh, &field));
     // The least angle, over the points of the section, from its formula: where n·(x, y, xy) = d it runs along n × normal.
     let angle = |k: usize| {
         let on = found.boundaries.boundaries[k + 1].points.iter().zip(&found.boundaries.boundaries[k + 1].on_surface);
@@ -217,7 +221,7 @@ fn plane_sections_stay_in_their_planes_also_beyond_the_surface() {
     };
     assert_eq!(refused(&[], &options), (Status::InvalidArgumentLength, "planes".into()));
     assert_eq!(refused(&[planes[0], at(9.0)], &options), (Status::NoIntersection, "planes[1]".into()));
-    assert_eq!(refused(&[planes[1], planes[0], planes[2]], &options), (Status::Infeasible, "planes[0]".into()));
+    assert_eq!(refused(&[planes[0], planes[2], planes[1]], &options), (Status::Infeasible, "planes[2]".into()));
     assert_eq!(
         refused(&[Plane { normal: DVec3::ZERO, offset: 0.0 }], &options),
         (Status::InvalidValue, "planes[0]".into())
@@ -230,4 +234,51 @@ fn plane_sections_stay_in_their_planes_also_beyond_the_surface() {
     assert_eq!(refused(&[oblique], &strict), (Status::Infeasible, "planes[0]".into()));
     let wrong = PlanarOptions { least_angle_rad: 2.0, ..options };
     assert_eq!(refused(&planes, &wrong), (Status::InvalidValue, "options.least_angle_rad".into()));
+}
+
+#[test]
+fn whatever_the_function_and_the_field_what_comes_back_is_finite() {
+    // Sums of waves by a seed: closed curves, saddles, parts where the field is not known or runs along the levels.
+    for seed in 0..40 {
+        let wave = |k: f64, x: f64, y: f64| (k * 1.7 + (3.0 + k) * x).sin() + (k * 0.9 - (2.0 + 1.3 * k) * y).cos();
+        let s = f64::from(seed) * 0.37;
+        let (mesh, field) = plane(15, |x, y| {
+            let slope = DVec3::new(wave(s, x, y), wave(s + 1.0, y, x), 0.0);
+            if slope.length() < 0.4 { DVec3::ZERO } else { slope }
+        });
+        let f = values(&mesh, |x, y| wave(s + 0.5, x, y) + 0.5 * wave(s, y, x));
+        for levels in [Levels::Count(7), Levels::Width(0.3)] {
+            let options = BoundaryOptions { least_length: if seed % 2 == 0 { 0.0 } else { 2.0 }, ..Default::default() };
+            let found = level_boundaries(&mesh, &field, &f, &levels, &options).unwrap();
+            for boundary in &found.boundaries {
+                assert!(boundary.points.len() >= 3 && boundary.points.len() == boundary.on_surface.len());
+                assert!(boundary.points.iter().all(|p| p.is_finite() && p.length() < 20.0), "{seed}");
+                assert!(boundary.points.windows(2).all(|pair| pair[0] != pair[1]), "{seed}");
+            }
+            assert!(found.strips.iter().flatten().all(|&k| k < found.boundaries.len()));
+            assert_eq!(found.check().is_ok(), found.unmatched.is_empty());
+            assert_eq!(level_boundaries(&mesh, &field, &f, &levels, &options).unwrap(), found);
+        }
+    }
+}
+
+#[test]
+fn closed_curves_may_be_drawn_around_a_hole() {
+    let ring =
+        parametric_surface(61, 8, [0.0, 6.2], [0.5, 1.5], |u, v| v * DVec3::new(u.cos(), -u.sin(), 0.0)).unwrap();
+    let mesh = TriangleMesh::new(&ring).unwrap();
+    let field = Field::new(&mesh, mesh.points().iter().map(|p| p.normalize()).collect(), vec![true; 61 * 8]).unwrap();
+    let circle = |radius: f64| {
+        let at = |k: usize| {
+            let angle = std::f64::consts::TAU * k as f64 / 40.0;
+            radius * DVec3::new(angle.cos(), angle.sin(), 0.0)
+        };
+        Drawn { points: (0..40).map(at).collect(), is_closed: true }
+    };
+    let options = BoundaryOptions::default();
+    let found = drawn_boundaries(&ReferenceMesh::new(&mesh), &field, &[circle(0.7), circle(1.1)], &options).unwrap();
+    assert!(found.boundaries.iter().all(|b| b.is_closed && b.points.len() == 40));
+    let error =
+        drawn_boundaries(&ReferenceMesh::new(&mesh), &field, &[circle(1.1), circle(0.7)], &options).unwrap_err();
+    assert_eq!((error.status(), error.place()), (Status::Infeasible, "curves[1]"));
 }

@@ -207,18 +207,8 @@ impl<'a> Rim<'a> {
         let stretches: Vec<_> =
             (0..count).map(|k| self.stretches(&chain[k], [0, 1].map(|side| neighbour(k, side)))).collect();
         let mut extended = chain.clone();
-        for (boundary, beside) in extended.iter_mut().zip(&stretches).filter(|(b, _)| extends && !b.is_closed) {
-            for end in [0, 1] {
-                let Some(reach) = boundary.reach(end == 1, self.mean_edge) else { continue };
-                let asked = beside[end].iter().map(|stretch| self.asked(reach, stretch)[0]).fold(0.0, f64::max);
-                if asked > 0.0 {
-                    boundary.extend(
-                        end == 1,
-                        (1.0 + MARGIN) * asked + LEAST_EXTENSION * self.mean_edge,
-                        self.mean_edge,
-                    );
-                }
-            }
+        for (boundary, beside) in extended.iter_mut().zip(&stretches).filter(|_| extends) {
+            self.extend(boundary, beside);
         }
         if count == 0 || is_cyclic {
             return extended;
@@ -228,11 +218,29 @@ impl<'a> Rim<'a> {
                 let reach = chain[k].reach(end == 1, self.mean_edge);
                 reach.map_or(0.0, |reach| self.asked(reach, &stretches[k][end][side])[1])
             });
-            let added = overshoots[side].then(|| self.overshoot(&extended[k], side, reaches));
-            added.flatten()
+            let mut added = overshoots[side].then(|| self.overshoot(&extended[k], side, reaches)).flatten();
+            if let Some(added) = added.as_mut().filter(|_| extends) {
+                self.extend(added, &stretches[k]);
+            }
+            added
         };
         let (before, after) = (over(0, 0), over(count - 1, 1));
         before.into_iter().chain(extended).chain(after).collect()
+    }
+
+    /// Extends the ends of an open boundary as the stretches of rim beside each ask for.
+    fn extend(&self, boundary: &mut Boundary, beside: &[[Stretch; 2]; 2]) {
+        if boundary.is_closed {
+            return;
+        }
+        for end in [0, 1] {
+            let Some(reach) = boundary.reach(end == 1, self.mean_edge) else { continue };
+            let asked = beside[end].iter().map(|stretch| self.asked(reach, stretch)[0]).fold(0.0, f64::max);
+            if asked > 0.0 {
+                let by = (1.0 + MARGIN) * asked + LEAST_EXTENSION * self.mean_edge;
+                boundary.extend(end == 1, by, self.mean_edge);
+            }
+        }
     }
 
     /// The boundary moved against the field (side 0) or along it (side 1), by the way to the rim; none if that is nothing.
@@ -240,9 +248,12 @@ impl<'a> Rim<'a> {
     fn overshoot(&self, from: &Boundary, side: usize, reaches: [f64; 2]) -> Option<Boundary> {
         let sign = if side == 0 { -1.0 } else { 1.0 };
         let count = from.points.len();
-        let ways =
-            from.on_surface.iter().map(|at| at.map(|at| walk(self.mesh, self.field, at, sign, &mut |_| false).length));
-        let mut ways: Vec<Option<f64>> = ways.collect();
+        // In a straight line, and none where the field goes in circles.
+        let way = |at: SurfacePoint| {
+            let walked = walk(self.mesh, self.field, at, sign, &mut |_| false);
+            walked.is_out.then(|| self.mesh.position(walked.end).distance(self.mesh.position(at)))
+        };
+        let mut ways: Vec<Option<f64>> = from.on_surface.iter().map(|at| way((*at)?)).collect();
         for (i, reach) in [(0, reaches[0]), (count - 1, reaches[1])] {
             ways[i] = Some(ways[i].unwrap_or(0.0).max(reach));
         }
@@ -307,17 +318,26 @@ impl<'a> Rim<'a> {
     }
 
     /// The sine of the angle between a boundary and the field at each of its points on the surface, signed: above 0 if the field
-    /// leads to the left; none where the field is not known.
+    /// leads to the left; none where the field is not known. Tangents are chords that reach half of a mean edge to both sides if the
+    /// boundary does, as shorter ones are noise.
     pub fn crossings(&self, boundary: &Boundary) -> Vec<Option<f64>> {
         let count = boundary.points.len();
+        let reach = |i: usize, step: usize| {
+            let (from, mut k) = (boundary.points[i], i);
+            for _ in 1..count {
+                let next = (k + step) % count;
+                let is_over = !boundary.is_closed && (if step == 1 { next == 0 } else { k == 0 });
+                if is_over || boundary.points[k].distance(from) >= 0.5 * self.mean_edge {
+                    break;
+                }
+                k = next;
+            }
+            boundary.points[k]
+        };
         let crossing = |i: usize| {
             let at = boundary.on_surface[i]?;
-            let (before, after) = match boundary.is_closed {
-                true => ((i + count - 1) % count, (i + 1) % count),
-                false => (i.saturating_sub(1), (i + 1).min(count - 1)),
-            };
             let normal = self.mesh.normal_at(at);
-            let along = boundary.points[after] - boundary.points[before];
+            let along = reach(i, 1) - reach(i, count - 1);
             let left = normal.cross(along.reject_from_normalized(normal)).try_normalize()?;
             Some(left.dot(self.at(at)?))
         };

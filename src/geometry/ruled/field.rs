@@ -42,6 +42,15 @@ impl Field {
         Ok(Self { directions, is_known })
     }
 
+    /// Refuses a mesh of other points than the field was made for, as far as their count tells.
+    pub(super) fn check(&self, mesh: &TriangleMesh) -> Result<()> {
+        if self.directions.len() == mesh.points().len() {
+            return Ok(());
+        }
+        let reason = format!("expected one of {} points, found {}", mesh.points().len(), self.directions.len());
+        Err(Error::new(Status::InvalidArgumentLength, reason).at("field"))
+    }
+
     /// The unit vectors at the points; what is not known has any.
     pub fn directions(&self) -> &[DVec3] {
         &self.directions

@@ -210,10 +210,7 @@ fn check(mesh: &TriangleMesh, field: &Field, options: &LevelOptions) -> Result<(
             return refusal(&format!("flips[{i}]"), format!("expected an edge of the mesh, found {a} and {b}"));
         }
     }
-    if field.directions().len() != mesh.points().len() {
-        let reason = format!("expected one of {} points, found {}", mesh.points().len(), field.directions().len());
-        return Err(Error::new(Status::InvalidArgumentLength, reason).at("field"));
-    }
+    field.check(mesh)?;
     if (0..mesh.triangles().len()).all(|t| field.on_triangle(mesh, t).is_none()) {
         return Err(Error::new(Status::CurvatureSign, "the field is known on no triangle").at("field"));
     }

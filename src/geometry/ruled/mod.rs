@@ -25,6 +25,9 @@ pub mod export;
 mod field;
 pub mod file;
 mod layout;
+mod cuts;
+mod field;
+pub mod great_circles;
 pub mod level_function;
 #[cfg(test)]
 mod level_function_tests;
@@ -47,6 +50,7 @@ pub mod terms;
 mod thin_plate;
 pub mod tracing;
 pub mod trim;
+mod stitching;
 mod walk;
 pub mod zebra;
 

@@ -9,19 +9,19 @@
 //! With jumps of `m` levels, and no jump that `m` does not divide, level `k` and level `k + m` are the same curves: the boundaries
 //! number `m`, and the first follows the last. Without jumps levels are as on a disk, though curves may be closed.
 
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
 use std::ops::ControlFlow;
 
 use super::Field;
 use super::boundaries::{Boundaries, BoundaryOptions, Dropped, Levels, level_boundaries, of_curve};
-use super::boundary::{Boundary, Rim};
+use super::boundary::Rim;
+use super::cuts::{Split, corners, cuts};
 use super::level_function::{LevelFunction, LevelOptions, solve};
 use super::level_terms::Jumps;
+use super::stitching::{Stitched, stitched};
 use crate::error::{Error, Result, Status};
 use crate::linalg::gauss_newton::Progress;
-use crate::mesh::level_curves::{LevelCurve, LevelPoint, critical_points, level_curves};
-use crate::mesh::{Mesh, TriangleMesh};
+use crate::mesh::TriangleMesh;
+use crate::mesh::level_curves::critical_points;
 
 /// Levels around a tube at most.
 const MOST_LEVELS: f64 = 1e5;
@@ -58,7 +58,7 @@ pub struct PeriodicBoundaries {
     /// Whether the first boundary follows the last; that strip is the last one.
     pub is_cyclic: bool,
     /// For each boundary how often it crosses a cut from right to left more than from left to right, of all cuts the most: 2 and
-    /// more, or −2 and less, is a spiral; for a closed one, that it goes around a hole.
+    /// more, or −2 and less, is a spiral. 0 where no cut has a jump.
     pub windings: Vec<i32>,
 }
 
@@ -110,19 +110,17 @@ pub fn periodic_boundaries(
         return Ok(PeriodicBoundaries { function, cuts, boundaries, is_cyclic: false, windings });
     }
     let values = split.values(&function.values, &rounded);
-    let (mut curves, windings) = split.stitched(mesh, &values, width, &counts, period)?;
     let rim = Rim::new(mesh, field);
-    let mut chain = Vec::new();
-    let mut dropped = Vec::new();
-    let mut kept_windings = Vec::new();
-    for ((level, curve), winding) in curves.drain(..).zip(windings) {
-        let boundary = of_curve(curve, level as f64 * width, rim.mean_edge());
+    let (mut chain, mut levels, mut windings, mut dropped) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for Stitched { level, curve, winding } in stitched(&split, mesh, &values, width, &counts, period)? {
+        let boundary = of_curve(curve, (level as f64 + 0.5) * width, rim.mean_edge());
         if boundary.points.len() < 3 || boundary.length() < options.least_length * width {
             let (point_count, length) = (boundary.points.len(), boundary.length());
             dropped.push(Dropped { level: boundary.level, point_count, length });
         } else {
-            chain.push((level, boundary));
-            kept_windings.push(winding);
+            chain.push(boundary);
+            levels.push(level);
+            windings.push(winding);
         }
     }
     if chain.is_empty() {
@@ -130,21 +128,18 @@ pub fn periodic_boundaries(
         return Err(Error::new(Status::OutOfDomain, reason).at("spacing"));
     }
     // One curve for each level, or strips are not told.
-    let is_single = chain.len() == period as usize && chain.windows(2).all(|pair| pair[0].0 < pair[1].0);
-    let levels: Vec<i64> = chain.iter().map(|(level, _)| *level).collect();
-    let chain: Vec<Boundary> = chain.into_iter().map(|(_, boundary)| boundary).collect();
+    let is_single = chain.len() == period as usize && levels.windows(2).all(|pair| pair[0] < pair[1]);
     let count = chain.len();
     let boundaries = if is_single {
         let strips = (0..count).filter(|_| count > 1).map(|k| [k, (k + 1) % count]).collect();
         let boundaries = rim.complete(chain, true, options.extends, [false; 2]);
         Boundaries { boundaries, strips, dropped, unmatched: Vec::new() }
     } else {
-        let mut unmatched = levels;
-        unmatched.dedup();
-        let unmatched = unmatched.into_iter().map(|level| level as f64 * width).collect();
+        levels.dedup();
+        let unmatched = levels.into_iter().map(|level| (level as f64 + 0.5) * width).collect();
         Boundaries { boundaries: chain, strips: Vec::new(), dropped, unmatched }
     };
-    Ok(PeriodicBoundaries { function, cuts, boundaries, is_cyclic: is_single, windings: kept_windings })
+    Ok(PeriodicBoundaries { function, cuts, boundaries, is_cyclic: is_single, windings })
 }
 
 fn gcd(a: i64, b: i64) -> i64 {
@@ -169,229 +164,6 @@ fn width(function: &LevelFunction, jumps: &[f64], spacing: Spacing, mean_edge: f
     let reason =
         format!("expected levels at a distance above 0, of which at most {MOST_LEVELS} fit, found {spacing:?}");
     Err(Error::new(Status::InvalidValue, reason).at("spacing"))
-}
-
-/// Shortest paths along edges, each from a loop of the boundary to one that is connected already, without common points.
-fn cuts(mesh: &TriangleMesh) -> Result<Vec<Vec<u32>>> {
-    let refusal = |reason: &str| Err(Error::new(Status::Infeasible, reason).at("mesh"));
-    let loops = mesh.boundary();
-    let euler = mesh.points().len() as i64 + mesh.triangles().len() as i64 - mesh.edges().len() as i64;
-    if mesh.components().1 != 1 || euler != 2 - loops.len() as i64 {
-        return refusal("expected a surface of one part without handles");
-    }
-    let mut loop_of = vec![usize::MAX; mesh.points().len()];
-    loops.iter().enumerate().for_each(|(l, points)| points.iter().for_each(|&i| loop_of[i as usize] = l));
-    let mut is_taken = vec![false; mesh.points().len()];
-    let mut is_connected = vec![false; loops.len()];
-    is_connected.iter_mut().take(1).for_each(|first| *first = true);
-    let mut paths = Vec::new();
-    for from in 1..loops.len() {
-        let is_goal = |i: u32| loop_of[i as usize] != usize::MAX && is_connected[loop_of[i as usize]];
-        let Some(path) = shortest(mesh, &loops[from], &is_taken, &loop_of, &is_goal) else {
-            return refusal("expected loops of the boundary that paths without common points connect");
-        };
-        path.iter().for_each(|&i| is_taken[i as usize] = true);
-        is_connected[from] = true;
-        paths.push(path);
-    }
-    Ok(paths)
-}
-
-/// The shortest path from some points to a goal through the inside, without points that are taken (Dijkstra 1959).
-fn shortest(
-    mesh: &TriangleMesh,
-    from: &[u32],
-    is_taken: &[bool],
-    loop_of: &[usize],
-    is_goal: &dyn Fn(u32) -> bool,
-) -> Option<Vec<u32>> {
-    let mut best = vec![f64::INFINITY; mesh.points().len()];
-    let mut before = vec![u32::MAX; mesh.points().len()];
-    // Distances are 0 or above: as integers their bits are in the same order.
-    let mut open = BinaryHeap::new();
-    for &i in from.iter().filter(|&&i| !is_taken[i as usize]) {
-        best[i as usize] = 0.0;
-        open.push(Reverse((0_u64, i)));
-    }
-    while let Some(Reverse((bits, i))) = open.pop() {
-        let distance = f64::from_bits(bits);
-        if distance > best[i as usize] {
-            continue;
-        }
-        if is_goal(i) {
-            let mut path = vec![i];
-            while before[path[path.len() - 1] as usize] != u32::MAX {
-                path.push(before[path[path.len() - 1] as usize]);
-            }
-            path.reverse();
-            return Some(path);
-        }
-        for j in mesh.neighbours(i as usize) {
-            let is_open = !is_taken[j as usize] && (loop_of[j as usize] == usize::MAX || is_goal(j));
-            let next = distance + mesh.points()[i as usize].distance(mesh.points()[j as usize]);
-            if is_open && next < best[j as usize] {
-                best[j as usize] = next;
-                before[j as usize] = i;
-                open.push(Reverse((next.to_bits(), j)));
-            }
-        }
-    }
-    None
-}
-
-/// The corners of the triangles to the left of each path, at its points.
-///
-/// Around an inner point of a path, counterclockwise, they are from the next point to the one before; at its first point, which is on
-/// the boundary, from the next point to the end of the fan, and at its last from the beginning of the fan to the one before.
-fn corners(mesh: &TriangleMesh, paths: &[Vec<u32>]) -> Vec<(u32, u32, f64)> {
-    let mut corners = Vec::new();
-    for (cut, path) in paths.iter().enumerate() {
-        for (k, &i) in path.iter().enumerate() {
-            let fan = mesh.fan(i as usize);
-            let corner = |t: u32| mesh.triangles()[t as usize].iter().position(|&j| j == i).unwrap_or(0);
-            // The point that a triangle of the fan begins at, seen from `i`.
-            let first = |t: u32| mesh.triangles()[t as usize][(corner(t) + 1) % 3];
-            let place = |j: u32| fan.iter().position(|&t| first(t) == j);
-            let start = path.get(k + 1).map_or(Some(0), |&next| place(next)).unwrap_or(0);
-            let end = k.checked_sub(1).and_then(|k| place(path[k]));
-            let is_inner = k > 0 && k + 1 < path.len();
-            // The point before the last may be where the fan ends, after all triangles.
-            let end = if k == 0 { fan.len() } else { end.unwrap_or(fan.len()) };
-            let span = if is_inner && end <= start { end + fan.len() - start } else { end.saturating_sub(start) };
-            for t in (0..span).map(|step| fan[(start + step) % fan.len()]) {
-                corners.push((3 * t + corner(t) as u32, cut as u32, 1.0));
-            }
-        }
-    }
-    corners.sort_unstable_by_key(|&(corner, cut, _)| (corner, cut));
-    corners
-}
-
-/// The mesh cut open: points of cuts are there once for each side, triangles as they were.
-struct Split {
-    mesh: TriangleMesh,
-    /// For each point that was added the one that it is a copy of, and the cut that it is to the left of.
-    copies: Vec<(u32, u32)>,
-    point_count: usize,
-}
-
-impl Split {
-    fn new(mesh: &TriangleMesh, jumps: &Jumps) -> Result<Self> {
-        let mut faces: Vec<Vec<u32>> = mesh.triangles().iter().map(|triangle| triangle.to_vec()).collect();
-        let mut points = mesh.points().to_vec();
-        let (mut copies, mut copy_of) = (Vec::new(), BTreeMap::new());
-        for &(corner, cut, _) in &jumps.corners {
-            let (t, k) = (corner as usize / 3, corner as usize % 3);
-            let i = mesh.triangles()[t][k];
-            faces[t][k] = *copy_of.entry(i).or_insert_with(|| {
-                points.push(mesh.points()[i as usize]);
-                copies.push((i, cut));
-                points.len() as u32 - 1
-            });
-        }
-        let mesh_error = |error: Error| Error::new(Status::Infeasible, error.to_string()).at("mesh");
-        let split = TriangleMesh::new(&Mesh { points, faces }).map_err(mesh_error)?;
-        Ok(Self { mesh: split, copies, point_count: mesh.points().len() })
-    }
-
-    /// The values of a function at its points.
-    fn values(&self, values: &[f64], jumps: &[f64]) -> Vec<f64> {
-        let copied = self.copies.iter().map(|&(i, cut)| values[i as usize] + jumps[cut as usize]);
-        values.iter().copied().chain(copied).collect()
-    }
-
-    /// If both ends of an edge are on one cut: the edge of the mesh, the cut, and whether this is its left side.
-    fn side(
-        &self,
-        original: &TriangleMesh,
-        point: &LevelPoint,
-        on_cut: &[Option<u32>],
-    ) -> Option<([u32; 2], usize, bool)> {
-        let copy = |i: u32| (i as usize).checked_sub(self.point_count).map(|k| self.copies[k]);
-        let mut edge = point.edge.map(|i| copy(i).map_or(i, |(i, _)| i));
-        edge.sort_unstable();
-        let cut = on_cut[edge[0] as usize].filter(|_| on_cut[edge[0] as usize] == on_cut[edge[1] as usize])?;
-        let is_left = point.edge.iter().all(|&i| copy(i).is_some());
-        // Points of a cut beside each other on the boundary are no cut edge.
-        let triangle = point.at.triangle as usize;
-        let k = (0..3).find(|&k| {
-            let corners = [original.triangles()[triangle][k], original.triangles()[triangle][(k + 1) % 3]];
-            edge.iter().all(|i| corners.contains(i))
-        })?;
-        original.across(triangle, k)?;
-        Some((edge, cut as usize, is_left))
-    }
-
-    /// The curves of all levels `k · width` modulo the period, each with its number and winding, in order of the numbers.
-    fn stitched(
-        &self,
-        original: &TriangleMesh,
-        values: &[f64],
-        width: f64,
-        counts: &[i64],
-        period: i64,
-    ) -> Result<(Vec<(i64, LevelCurve)>, Vec<i32>)> {
-        let mut on_cut = vec![None; self.point_count];
-        self.copies.iter().for_each(|&(i, cut)| on_cut[i as usize] = Some(cut));
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let mut pieces: Vec<(i64, LevelCurve)> = Vec::new();
-        for k in (low / width).floor() as i64..=(high / width).ceil() as i64 {
-            let curves = level_curves(&self.mesh, values, k as f64 * width)?;
-            pieces.extend(curves.into_iter().filter(|curve| curve.points.len() > 1).map(|curve| (k, curve)));
-        }
-        // Where pieces begin at cuts, by the edge and the level on the right side.
-        let end = |piece: usize, is_last: bool| {
-            let (k, curve) = &pieces[piece];
-            let point = if is_last { curve.points.last()? } else { curve.points.first()? };
-            let (edge, cut, is_left) = self.side(original, point, &on_cut).filter(|_| !curve.is_closed)?;
-            Some(((edge, if is_left { k - counts[cut] } else { *k }), cut, is_left))
-        };
-        let mut begins = BTreeMap::new();
-        for piece in 0..pieces.len() {
-            begins.extend(end(piece, false).map(|(key, ..)| (key, piece)));
-        }
-        let mut is_used = vec![false; pieces.len()];
-        let (mut found, mut windings) = (Vec::new(), Vec::new());
-        for wants_closed in [false, true] {
-            for first in 0..pieces.len() {
-                if is_used[first] || (!wants_closed && end(first, false).is_some()) {
-                    continue;
-                }
-                let mut winding = vec![0_i32; counts.len()];
-                let (mut points, mut now) = (Vec::new(), first);
-                let is_closed = loop {
-                    is_used[now] = true;
-                    points.extend_from_slice(&pieces[now].1.points);
-                    if pieces[now].1.is_closed {
-                        break true;
-                    }
-                    let Some((key, cut, is_left)) = end(now, true) else { break false };
-                    winding[cut] += if is_left { -1 } else { 1 };
-                    match begins.get(&key) {
-                        Some(&next) if next == first => break true,
-                        Some(&next) if !is_used[next] => {
-                            // The point on the cut is there twice.
-                            points.pop();
-                            now = next;
-                        }
-                        _ => break false,
-                    }
-                };
-                if is_closed && points.len() > 1 && !pieces[now].1.is_closed {
-                    points.pop();
-                }
-                let most =
-                    winding.into_iter().fold(0, |most: i32, count| if count.abs() > most.abs() { count } else { most });
-                found.push((pieces[first].0.rem_euclid(period), LevelCurve { points, is_closed }));
-                windings.push(most);
-            }
-        }
-        let mut order: Vec<usize> = (0..found.len()).collect();
-        order.sort_by_key(|&i| found[i].0);
-        let windings = order.iter().map(|&i| windings[i]).collect();
-        Ok((order.into_iter().map(|i| found[i].clone()).collect(), windings))
-    }
 }
 
 #[cfg(test)]
@@ -444,7 +216,8 @@ mod tests {
 
     #[test]
     fn boundaries_around_a_catenoid_close_up_at_right_angles() {
-        let tube = tube(96, 41, 1.0);
+        // The greatest angle is of first order: 1.4° with 96 points around.
+        let tube = tube(192, 81, 1.0);
         let jump = find(&tube, LevelWeights::DIRECTION, Spacing::Count(20)).cuts[0].found.abs();
         // Rounding changes the jump by 2 %.
         for spacing in [Spacing::Count(20), Spacing::Width(jump / 20.4)] {
@@ -465,11 +238,10 @@ mod tests {
                     .collect();
                 let (low, high) = (on[0].z.min(on[on.len() - 1].z), on[0].z.max(on[on.len() - 1].z));
                 assert!((low + 1.0).abs() < 1e-12 && (high - 1.0).abs() < 1e-12);
-                assert!(on.windows(2).all(|pair| pair[0].distance(pair[1]) < 0.2));
+                assert!(on.windows(2).all(|pair| pair[0].distance(pair[1]) < 0.1));
                 for sine in rim.crossings(boundary).into_iter().flatten() {
-                    worst = worst.max(
-                        (1.0 - sine * sine).max(0.0).sqrt().asin().to_degrees() + if sine < 0.0 { 90.0 } else { 0.0 },
-                    );
+                    assert!(sine > 0.0);
+                    worst = worst.max(sine.min(1.0).acos().to_degrees());
                 }
                 assert!(rim.is_ahead(&boundaries[(k + 1) % 20], boundary));
             }
@@ -487,14 +259,14 @@ mod tests {
         let field = Field::new(&mesh, mesh.points().iter().map(up).collect(), vec![true; mesh.points().len()]).unwrap();
         let found = find(&(mesh, field), LevelWeights::ORTHOGONAL, Spacing::Count(6));
         let boundaries = &found.boundaries.boundaries;
-        assert!(!found.is_cyclic && found.cuts[0].jump == 0.0 && found.cuts[0].found.abs() < 1e-6);
+        assert!(!found.is_cyclic && found.cuts[0].jump == 0.0 && found.cuts[0].found.abs() < 5e-3);
         // Six levels, and one beyond each rim.
         assert!(boundaries.len() == 8 && boundaries.iter().all(|boundary| boundary.is_closed));
         assert!(boundaries[0].points[0].z < -1.0 && boundaries[7].points[0].z > 1.0);
     }
 
     #[test]
-    fn surfaces_with_handles_and_spacings_without_end_are_refused() {
+    fn spacings_without_end_are_refused() {
         let tube = tube(24, 7, 0.5);
         let refused = |spacing| {
             let (weights, options) = (LevelOptions::default(), BoundaryOptions::default());
@@ -504,12 +276,36 @@ mod tests {
         assert_eq!(refused(Spacing::Width(1e-9)), "spacing");
         assert_eq!(refused(Spacing::Width(f64::NAN)), "spacing");
         assert_eq!(refused(Spacing::Count(0)), "spacing");
-        let torus = |k: usize| {
-            let (u, v) = (TAU * (k % 12) as f64 / 12.0, TAU * (k / 12) as f64 / 12.0);
-            DVec3::new((3.0 + u.cos()) * v.cos(), (3.0 + u.cos()) * v.sin(), u.sin())
+    }
+
+    #[test]
+    fn levels_of_a_slope_around_a_cylinder_are_spirals() {
+        // f = (z + 0.1 v)/√1.01 rises by 0.2 π/√1.01 around; its levels fall by 0.2 π on the way, three times and more from z = 2 to 0.
+        let around = 60;
+        let at = |k: usize| {
+            let (z, v) = (2.0 * (k / around) as f64 / 20.0, TAU * (k % around) as f64 / around as f64);
+            let ahead = DVec3::new(-v.sin(), v.cos(), 0.0);
+            (DVec3::new(v.cos(), v.sin(), z), (DVec3::Z + 0.1 * ahead).normalize())
         };
-        let torus = Grid::new((0..144).map(torus).collect(), 12, 12, [true, true]).unwrap().mesh();
-        let error = cuts(&TriangleMesh::new(&torus).unwrap()).unwrap_err();
-        assert_eq!((error.status(), error.place()), (Status::Infeasible, "mesh"));
+        let (points, directions): (Vec<DVec3>, Vec<DVec3>) = (0..around * 21).map(at).unzip();
+        let mesh = TriangleMesh::new(&Grid::new(points, 21, around, [false, true]).unwrap().mesh()).unwrap();
+        let field = Field::new(&mesh, directions, vec![true; around * 21]).unwrap();
+        let found = find(&(mesh, field), LevelWeights::ORTHOGONAL, Spacing::Count(2));
+        assert!((found.cuts[0].found.abs() - 0.2 * std::f64::consts::PI / 1.01_f64.sqrt()).abs() < 5e-3);
+        assert!(found.is_cyclic && found.boundaries.boundaries.len() == 2);
+        assert!(found.windings.iter().all(|w| (2..=4).contains(&w.abs())), "{:?}", found.windings);
+        // Down a slope of 1 in 10 around a circle, and 2 in all.
+        for boundary in &found.boundaries.boundaries {
+            let on = boundary.on_surface.iter().flatten().count();
+            let points: Vec<DVec3> = boundary
+                .points
+                .iter()
+                .zip(&boundary.on_surface)
+                .filter(|(_, at)| at.is_some())
+                .map(|(p, _)| *p)
+                .collect();
+            let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+            assert!(on > 100 && (length / (20.0 * 1.01_f64.sqrt()) - 1.0).abs() < 5e-3, "{length}");
+        }
     }
 }

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::Field;
-use super::boundaries::{Boundaries, BoundaryOptions, Dropped, of_curve};
+use super::boundaries::{Boundaries, BoundaryOptions, Dropped, longest, ordered};
 use super::boundary::{Boundary, Rim};
 use crate::error::{Error, Result, Status};
 use crate::mesh::TriangleMesh;
@@ -60,7 +60,7 @@ pub struct PlanarBoundaries {
 ///
 /// # Errors
 /// No plane, a normal of length 0, or a number that is not finite (`planes`, `planes[k]`); options out of range
-/// (`options.least_angle_rad`). Status `NoIntersection`: a plane misses the surface, or touches it (`planes[k]`). `Infeasible`: a
+/// (`options.least_angle_rad`); a field of another mesh (`field`). Status `NoIntersection`: a plane misses the surface, or touches it (`planes[k]`). `Infeasible`: a
 /// plane is not ahead of the one before it along the field, its section runs along the field or where it is not known, or, if that
 /// is refused, crosses it at too small an angle (`planes[k]`).
 pub fn planar_boundaries(
@@ -70,6 +70,7 @@ pub fn planar_boundaries(
     options: &PlanarOptions,
 ) -> Result<PlanarBoundaries> {
     options.boundaries.check()?;
+    field.check(mesh)?;
     if !(0.0..=std::f64::consts::FRAC_PI_2).contains(&options.least_angle_rad) {
         let reason = format!("expected an angle from 0 to π/2, found {}", options.least_angle_rad);
         return Err(Error::new(Status::InvalidValue, reason).at("options.least_angle_rad"));
@@ -97,16 +98,10 @@ pub fn planar_boundaries(
         angles_rad.push(angle);
         chain.push(boundary);
     }
-    // Planes may come against the field.
-    let is_against = chain.len() > 1 && !rim.is_ahead(&chain[1], &chain[0]);
-    if is_against {
-        chain.reverse();
-    }
-    if let Some(i) = (1..chain.len()).find(|&i| !rim.is_ahead(&chain[i], &chain[i - 1])) {
+    let chain = ordered(&rim, chain).map_err(|k| {
         let reason = "expected planes that follow each other along the field, or against it";
-        let k = chain[if is_against { i - 1 } else { i }].level;
-        return Err(Error::new(Status::Infeasible, reason).at(format!("planes[{k}]")));
-    }
+        Error::new(Status::Infeasible, reason).at(format!("planes[{k}]"))
+    })?;
     let overshoots = [options.boundaries.overshoots; 2];
     let mut boundaries = rim.complete(chain, false, options.boundaries.extends, overshoots);
     let planes = flatten(&mut boundaries, planes);
@@ -129,21 +124,9 @@ fn section(
     }
     let values: Vec<f64> = mesh.points().iter().map(|p| plane.normal.dot(*p) / length).collect();
     let curves = level_curves(mesh, &values, plane.offset / length)?;
-    let mut boundaries: Vec<Boundary> =
-        curves.into_iter().map(|curve| of_curve(curve, k as f64, rim.mean_edge())).collect();
-    let length = |i: &usize| boundaries[*i].length();
-    // The first of several that are equally long.
-    let longest = (0..boundaries.len()).rev().max_by(|a, b| length(a).total_cmp(&length(b)));
-    let Some(longest) = longest.filter(|&i| boundaries[i].points.len() > 1) else {
-        return Err(Error::new(
-            Status::NoIntersection,
-            "expected a plane that cuts the surface, found one that does not",
-        ));
-    };
-    let found = boundaries.remove(longest);
-    let drop = |b: &Boundary| Dropped { level: k as f64, point_count: b.points.len(), length: b.length() };
-    dropped.extend(boundaries.iter().map(drop));
-    Ok(found)
+    longest(curves, k, rim.mean_edge(), dropped).ok_or_else(|| {
+        Error::new(Status::NoIntersection, "expected a plane that cuts the surface, found one that does not")
+    })
 }
 
 /// Moves the points of the boundaries beyond the surface along their ways into a plane parallel to that of the boundary that they

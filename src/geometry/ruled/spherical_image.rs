@@ -21,7 +21,6 @@ use super::level_terms::Metric;
 use crate::error::{Error, Result, Status};
 use crate::linalg::dense::Svd;
 use crate::mesh::TriangleMesh;
-use crate::mesh::level_curves::{LevelCurve, level_curves_within};
 use crate::mesh::operators::{gradients_of_corners, mixed_parts};
 use crate::mesh::triangles::{SurfacePoint, blend};
 
@@ -92,8 +91,9 @@ impl SphericalImage {
     /// The image of a field. Triangles with a corner where the field is not known have none.
     ///
     /// # Errors
-    /// Status `CurvatureSign`: the field is known on no triangle; the place is `field`.
+    /// The field is of another mesh, or, status `CurvatureSign`, known on no triangle; the place is `field`.
     pub fn new(mesh: &TriangleMesh, field: &Field) -> Result<Self> {
+        field.check(mesh)?;
         let count = mesh.triangles().len();
         let corners = |t: usize| mesh.triangles()[t].map(|i| field.directions()[i as usize]);
         let is_known = |t: usize| mesh.triangles()[t].iter().all(|&i| field.is_known()[i as usize]);
@@ -184,9 +184,10 @@ impl Axis {
         Some(Self { direction, error, flatness: if first > 0.0 { last / first } else { 0.0 } })
     }
 
-    /// The axis of the field at some points of the mesh; points where it is not known are left out. For a strip, give the points of
+    /// The axis of the field at some points of its mesh; points where it is not known are left out. For a strip, give the points of
     /// both boundaries.
     pub fn of_points(mesh: &TriangleMesh, field: &Field, points: &[SurfacePoint]) -> Option<Self> {
+        field.check(mesh).ok()?;
         let direction = |at: &SurfacePoint| {
             let corners = mesh.triangles().get(at.triangle as usize)?.map(|i| i as usize);
             let is_known = (0..3).all(|k| at.weights[k] == 0.0 || field.is_known()[corners[k]]);
@@ -195,24 +196,4 @@ impl Axis {
         };
         Self::new(&points.iter().filter_map(direction).collect::<Vec<_>>())
     }
-}
-
-/// The curves on the mesh where the field is orthogonal to `axis`: what a great circle of the sphere is the image of. Given as a
-/// boundary, it makes rulings that begin there parallel to one plane.
-///
-/// # Errors
-/// An axis that is not finite or zero (`axis`). Status `NoIntersection`: the image does not meet the great circle (`axis`).
-pub fn great_circle(mesh: &TriangleMesh, field: &Field, axis: DVec3) -> Result<Vec<LevelCurve>> {
-    let Some(axis) = axis.try_normalize().filter(|axis| axis.is_finite()) else {
-        let reason = format!("expected a direction, found {axis}");
-        return Err(Error::new(Status::InvalidValue, reason).at("axis"));
-    };
-    let values: Vec<f64> = field.directions().iter().map(|a| a.dot(axis)).collect();
-    let is_known = |t: usize| mesh.triangles()[t].iter().all(|&i| field.is_known()[i as usize]);
-    let curves = level_curves_within(mesh, &values, 0.0, is_known)?;
-    if curves.is_empty() {
-        let reason = "the field is nowhere orthogonal to this direction";
-        return Err(Error::new(Status::NoIntersection, reason).at("axis"));
-    }
-    Ok(curves)
 }

@@ -19,8 +19,6 @@ const ALONG: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Walked {
     pub end: SurfacePoint,
-    /// The length of the way.
-    pub length: f64,
     /// Whether it ended at the boundary, or where the field is not known; otherwise it was stopped.
     pub is_out: bool,
 }
@@ -34,13 +32,12 @@ pub(super) fn walk(
     sign: f64,
     stop: &mut dyn FnMut(SurfacePoint) -> bool,
 ) -> Walked {
-    let mut walked = Walked { end: from, length: 0.0, is_out: false };
+    let mut walked = Walked { end: from, is_out: false };
     for _ in 0..mesh.triangles().len() + 100 {
-        let Some(course) = Course::from(mesh, field, walked.end, sign) else {
+        let Some(end) = from_point(mesh, field, walked.end, sign) else {
             return Walked { is_out: true, ..walked };
         };
-        walked.length += course.time;
-        walked.end = course.end;
+        walked.end = end;
         if stop(walked.end) {
             return walked;
         }
@@ -48,75 +45,69 @@ pub(super) fn walk(
     walked
 }
 
-/// The way through one triangle.
-struct Course {
-    end: SurfacePoint,
-    time: f64,
+/// The end of the way from a point through one triangle.
+fn from_point(mesh: &TriangleMesh, field: &Field, at: SurfacePoint, sign: f64) -> Option<SurfacePoint> {
+    let t = at.triangle as usize;
+    let zeros = (0..3).filter(|&k| at.weights[k] <= ON_EDGE).count();
+    if zeros == 2 {
+        return from_corner(mesh, field, at, sign);
+    }
+    if let Some(k) = (0..3).find(|&k| at.weights[k] <= ON_EDGE) {
+        // On the edge opposite to corner k: into this triangle, into that across, or along.
+        if let Some((rates, is_in)) = rates(mesh, field, t, sign, Some(k))
+            && is_in
+        {
+            return through(at, rates);
+        }
+        let (other, l) = mesh.across(t, (k + 1) % 3)?;
+        let mut weights = [0.0; 3];
+        (weights[l], weights[(l + 1) % 3]) = (at.weights[(k + 2) % 3], at.weights[(k + 1) % 3]);
+        let at = SurfacePoint { triangle: other as u32, weights };
+        let (mut rates, is_in) = rates(mesh, field, other, sign, Some((l + 2) % 3))?;
+        if !is_in {
+            // Both lead to the edge: along it, without what leads off it.
+            let mean = 0.5 * (rates[l] - rates[(l + 1) % 3]);
+            rates = [0.0; 3];
+            (rates[l], rates[(l + 1) % 3]) = (mean, -mean);
+        }
+        return through(at, rates);
+    }
+    let (rates, _) = rates(mesh, field, t, sign, None)?;
+    through(at, rates)
 }
 
-impl Course {
-    fn from(mesh: &TriangleMesh, field: &Field, at: SurfacePoint, sign: f64) -> Option<Self> {
-        let t = at.triangle as usize;
-        let zeros = (0..3).filter(|&k| at.weights[k] <= ON_EDGE).count();
-        if zeros == 2 {
-            return Self::from_corner(mesh, field, at, sign);
-        }
-        if let Some(k) = (0..3).find(|&k| at.weights[k] <= ON_EDGE) {
-            // On the edge opposite to corner k: into this triangle, into that across, or along.
-            if let Some((rates, is_in)) = rates(mesh, field, t, sign, Some(k))
-                && is_in
-            {
-                return Self::through(at, rates);
-            }
-            let (other, l) = mesh.across(t, (k + 1) % 3)?;
+/// From a corner into that triangle of its fan which the field leads into most.
+fn from_corner(mesh: &TriangleMesh, field: &Field, at: SurfacePoint, sign: f64) -> Option<SurfacePoint> {
+    let heaviest = (0..3).max_by(|&a, &b| at.weights[a].total_cmp(&at.weights[b]))?;
+    let point = mesh.triangles()[at.triangle as usize][heaviest] as usize;
+    let mut best: Option<(f64, SurfacePoint, [f64; 3])> = None;
+    for &t in mesh.fan(point) {
+        let corner = mesh.triangles()[t as usize].iter().position(|&i| i as usize == point)?;
+        let Some((mut rates, _)) = rates(mesh, field, t as usize, sign, None) else { continue };
+        let others = [(corner + 1) % 3, (corner + 2) % 3];
+        let least = rates[others[0]].min(rates[others[1]]) / rates[corner].abs().max(f64::MIN_POSITIVE);
+        if rates[corner] < 0.0 && best.is_none_or(|(value, ..)| least > value) {
+            others.iter().for_each(|&k| rates[k] = rates[k].max(0.0));
             let mut weights = [0.0; 3];
-            (weights[l], weights[(l + 1) % 3]) = (at.weights[(k + 2) % 3], at.weights[(k + 1) % 3]);
-            let at = SurfacePoint { triangle: other as u32, weights };
-            let (mut rates, is_in) = rates(mesh, field, other, sign, Some((l + 2) % 3))?;
-            if !is_in {
-                // Both lead to the edge: along it, without what leads off it.
-                let mean = 0.5 * (rates[l] - rates[(l + 1) % 3]);
-                rates = [0.0; 3];
-                (rates[l], rates[(l + 1) % 3]) = (mean, -mean);
-            }
-            return Self::through(at, rates);
+            weights[corner] = 1.0;
+            best = Some((least, SurfacePoint { triangle: t, weights }, rates));
         }
-        let (rates, _) = rates(mesh, field, t, sign, None)?;
-        Self::through(at, rates)
     }
+    // Inside some triangle is always met, but for the angles that the field turns by; at the boundary none may be.
+    let slack = if mesh.is_on_boundary(point) { ALONG } else { 1.0 };
+    let (_, at, rates) = best.filter(|(least, ..)| *least >= -slack)?;
+    through(at, rates)
+}
 
-    /// From a corner into that triangle of its fan which the field leads into most.
-    fn from_corner(mesh: &TriangleMesh, field: &Field, at: SurfacePoint, sign: f64) -> Option<Self> {
-        let heaviest = (0..3).max_by(|&a, &b| at.weights[a].total_cmp(&at.weights[b]))?;
-        let point = mesh.triangles()[at.triangle as usize][heaviest] as usize;
-        let mut best: Option<(f64, SurfacePoint, [f64; 3])> = None;
-        for &t in mesh.fan(point) {
-            let corner = mesh.triangles()[t as usize].iter().position(|&i| i as usize == point)?;
-            let Some((mut rates, _)) = rates(mesh, field, t as usize, sign, None) else { continue };
-            let others = [(corner + 1) % 3, (corner + 2) % 3];
-            let least = rates[others[0]].min(rates[others[1]]) / rates[corner].abs().max(f64::MIN_POSITIVE);
-            if rates[corner] < 0.0 && best.is_none_or(|(value, ..)| least > value) {
-                others.iter().for_each(|&k| rates[k] = rates[k].max(0.0));
-                let mut weights = [0.0; 3];
-                weights[corner] = 1.0;
-                best = Some((least, SurfacePoint { triangle: t, weights }, rates));
-            }
-        }
-        // Inside some triangle is always met, but for the angles that the field turns by; at the boundary none may be.
-        let slack = if mesh.is_on_boundary(point) { ALONG } else { 1.0 };
-        let (_, at, rates) = best.filter(|(least, ..)| *least >= -slack)?;
-        Self::through(at, rates)
-    }
-
-    fn through(at: SurfacePoint, rates: [f64; 3]) -> Option<Self> {
-        let leaving = (0..3).filter(|&k| rates[k] < 0.0 && at.weights[k] > ON_EDGE);
-        let (time, k) = leaving.map(|k| (-at.weights[k] / rates[k], k)).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let mut weights = [0, 1, 2].map(|j| (at.weights[j] + time * rates[j]).max(0.0));
-        weights[k] = 0.0;
-        let sum: f64 = weights.iter().sum();
-        let weights = weights.map(|weight| if weight <= ON_EDGE { 0.0 } else { weight / sum });
-        Some(Self { end: SurfacePoint { weights, ..at }, time })
-    }
+/// Where a triangle is left at these rates.
+fn through(at: SurfacePoint, rates: [f64; 3]) -> Option<SurfacePoint> {
+    let leaving = (0..3).filter(|&k| rates[k] < 0.0 && at.weights[k] > ON_EDGE);
+    let (time, k) = leaving.map(|k| (-at.weights[k] / rates[k], k)).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let mut weights = [0, 1, 2].map(|j| (at.weights[j] + time * rates[j]).max(0.0));
+    weights[k] = 0.0;
+    let sum: f64 = weights.iter().sum();
+    let weights = weights.map(|weight| if weight <= ON_EDGE { 0.0 } else { weight / sum });
+    Some(SurfacePoint { weights, ..at })
 }
 
 /// How fast the weights of a triangle's corners change along the field, and whether a point on the edge opposite to a corner is led
@@ -164,13 +155,14 @@ mod tests {
                     let walked = walk(&mesh, &field, from, sign, &mut |_| false);
                     assert!(walked.is_out);
                     let (start, end) = (mesh.position(from), mesh.position(walked.end));
-                    assert!(end.distance(start + sign * walked.length * along) < 1e-12, "{angle} {sign} {end}");
+                    assert!(end.distance(start + sign * start.distance(end) * along) < 1e-12, "{angle} {sign} {end}");
                     let to_border = end.x.min(1.0 - end.x).min(end.y).min(1.0 - end.y);
                     assert!(to_border < 1e-12, "{angle} {sign} {start} {end}");
                 }
             }
             let halfway = walk(&mesh, &field, corner(&mesh, 0), 1.0, &mut |at| mesh.position(at).length() > 0.5);
-            assert!(!halfway.is_out && halfway.length > 0.5 && halfway.length < 0.7);
+            let way = mesh.position(halfway.end).length();
+            assert!(!halfway.is_out && way > 0.5 && way < 0.7);
         }
     }
 
