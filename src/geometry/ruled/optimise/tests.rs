@@ -76,6 +76,8 @@ fn falls(found: &Optimised) -> bool {
 }
 
 /// Ends fixed and nothing else that holds strips back.
+static NO_JOINTS: Joints = Joints { pairs: Vec::new(), is_shared: false };
+
 const BARE: Options = Options {
     weights: Weights { proximity: 1.0, beyond: 1e-2, gap: 1.0, coverage: 0.0, thin_plate: 0.0, proximal: 0.0 },
     bounds: Bounds { largest_deviation: None, least_width: None },
@@ -95,11 +97,13 @@ fn the_saddle_is_one_strip_exactly() {
     for count in [4, 11] {
         let strips = rows(&surface, &[-1.0, 1.0], count, 0.05);
         let conditions = Condition::fixed_ends(&strips);
-        let found = optimise(task(&strips, &surface, &Joints::default(), &conditions), &BARE, &mut on).unwrap();
-        eprintln!("{count} {:?} {:#?}", found.stop, found.history.iter().map(|h| (h.value, h.taken, h.moved)).collect::<Vec<_>>());
+        let cover: Vec<DVec3> = surface.mesh(21, 21).unwrap().points;
+        let options = Options { weights: Weights { coverage: 1.0, ..BARE.weights }, ..BARE };
+        let task = Task { cover: &cover, ..task(&strips, &surface, &NO_JOINTS, &conditions) };
+        let found = optimise(task, &options, &mut on).unwrap();
+        eprintln!("{count} {:?} {:?}", found.stop, found.history.iter().map(|h| (h.value, h.taken, h.moved)).collect::<Vec<_>>());
         assert!(falls(&found));
         assert!(found.last().parts.proximity <= 1e-20, "{:?}", found.history);
-        let cover: Vec<DVec3> = surface.mesh(21, 21).unwrap().points;
         let [there, back] = deviations(&found.strips, &surface, &cover);
         assert!(there <= 1e-10 * size && back <= 1e-10 * size, "{there} {back}");
     }
@@ -112,9 +116,49 @@ fn freeform_width() {
         let ys: Vec<f64> = (0..=count).map(|i| -0.8 + 1.6 * i as f64 / count as f64).collect();
         let strips = rows(&surface, &ys, 11, 0.02);
         let conditions = Condition::fixed_ends(&strips);
-        let found = optimise(task(&strips, &surface, &Joints::chain(count), &conditions), &Options {tolerance: 1e-9, ..Options::default()}, &mut on).unwrap();
         let cover: Vec<DVec3> = surface.mesh(21, 21).unwrap().points;
+        for conditions in [&conditions[..], &[]] {
+        let joints = Joints::chain(count);
+        let task = Task { cover: &cover, ..task(&strips, &surface, &joints, conditions) };
+        let found = optimise(task, &Options::default(), &mut on).unwrap();
         let [there, back] = deviations(&found.strips, &surface, &cover);
-        eprintln!("{count} {expected} {there} {back} {:?} {:#?}", found.stop, found.history.iter().map(|h| (h.value, h.taken, h.moved, h.largest_gap)).collect::<Vec<_>>());
+        eprintln!("{count} {expected} {there} {back} {:?} {:?}", found.stop, found.history.iter().map(|h| (h.value, h.taken, h.moved, h.largest_gap)).collect::<Vec<_>>());}
+    }
+}
+
+#[test]
+fn gradients_are_those_of_the_value() {
+    let surface = saddle(0.1, 0.8);
+    let cover: Vec<DVec3> = surface.mesh(11, 11).unwrap().points;
+    let ys = [-0.75, 0.1, 0.7];
+    for amount in [0.02, 0.1] {
+    let strips = rows(&surface, &ys, 6, amount);
+    let joints = Joints::chain(2);
+    for (name, weights) in [("proximity", [1.0, 0.0, 0.0, 0.0]), ("gap", [0.0, 1.0, 0.0, 0.0]), ("coverage", [0.0, 0.0, 1.0, 0.0]), ("way", [0.0, 0.0, 0.0, 1.0])] {
+        let [proximity, gap, coverage, way] = weights;
+        let weights = Weights { proximity, beyond: 0.5, gap, coverage, thin_plate: way, proximal: way };
+        let (layout, start) = Layout::new(&strips, &joints).unwrap();
+        let aim = Aim { reference: &surface, cover: &cover, joints: &joints };
+        let terms = Terms::new(aim, (layout, start.clone()), weights, [4, 5]).unwrap();
+        let mut noise = noise(3);
+        let points: Vec<DVec3> = start.iter().map(|p| *p + 0.02 * DVec3::new(noise(), noise(), noise())).collect();
+        let at = terms.evaluate(&points).unwrap();
+        let gradient = super::super::system::flat(&super::super::system::gradient(&terms, &at, &points));
+        let x = super::super::system::flat(&points);
+        let largest = gradient.iter().fold(0.0_f64, |most, g| most.max(g.abs()));
+        let mut worst = 0.0_f64;
+        for i in 0..x.len() {
+            let value = |h: f64| {
+                let mut x = x.clone();
+                x[i] += h;
+                terms.evaluate(&points_of(&x)).unwrap().parts.total()
+            };
+            let h = 1e-5;
+            let e = ((value(h) - value(-h)) / (2.0 * h) - gradient[i]).abs() / largest;
+            if e > 1e-4 { eprintln!("{i} {e} {} {} {}", value(h), value(-h), value(0.0)); }
+            worst = worst.max(e);
+        }
+        eprintln!("{name} {amount} {worst}");
+    }
     }
 }
