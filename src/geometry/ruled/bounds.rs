@@ -120,7 +120,9 @@ pub(super) fn step(
         for (i, strip) in strips.iter().enumerate() {
             for u in parameters(strip) {
                 let [a, b] = strip.ruling(u);
-                let Some(direction) = (b - a).try_normalize().filter(|_| a.distance(b) * NEAR < bound) else { continue };
+                let Some(direction) = (b - a).try_normalize().filter(|_| a.distance(b) * NEAR < bound) else {
+                    continue;
+                };
                 let ends = [(layout.weights(i, u, 0.0), 1.0), (layout.weights(i, u, 1.0), -1.0)];
                 let point = |((points, weights), sign): (([u32; 8], [f64; 8]), f64)| {
                     points.into_iter().zip(weights.map(|weight| sign * weight))

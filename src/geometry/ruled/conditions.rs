@@ -65,7 +65,11 @@ impl Condition {
                 Self::FixedEnd { strip, side, end, position }
             };
             let places = [(0, End::Start), (0, End::Finish), (1, End::Start), (1, End::Finish)];
-            if of.basis().is_closed() { Vec::new() } else { places.map(|place| at(place, of.control(place.0))).to_vec() }
+            if of.basis().is_closed() {
+                Vec::new()
+            } else {
+                places.map(|place| at(place, of.control(place.0))).to_vec()
+            }
         };
         strips.iter().enumerate().flat_map(ends).collect()
     }
@@ -75,7 +79,9 @@ impl Condition {
         let side = |side: usize| if side == 0 { "first" } else { "second" };
         let at = |end: End| if end == End::Start { "start" } else { "finish" };
         match *self {
-            Self::PlanarBoundary { strip, side: s, .. } => format!("the plane of the {} boundary of strip {strip}", side(s)),
+            Self::PlanarBoundary { strip, side: s, .. } => {
+                format!("the plane of the {} boundary of strip {strip}", side(s))
+            }
             Self::FixedEnd { strip, side: s, end, .. } => {
                 format!("the fixed {} of the {} boundary of strip {strip}", at(end), side(s))
             }

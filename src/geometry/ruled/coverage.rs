@@ -168,7 +168,8 @@ mod tests {
         };
         let basis = CubicBasis::new(count, false).unwrap();
         let strip = |y: f64| Strip::new(basis.clone(), [row(y, 2.0), row(y + 0.5, 3.0)]).unwrap();
-        let ring = |z: f64| (0..8).map(|i| 0.785 * f64::from(i)).map(|t| DVec3::new(3.0 + t.cos(), t.sin(), z)).collect();
+        let ring =
+            |z: f64| (0..8).map(|i| 0.785 * f64::from(i)).map(|t| DVec3::new(3.0 + t.cos(), t.sin(), z)).collect();
         let tube = Strip::new(CubicBasis::new(8, true).unwrap(), [ring(-0.4), ring(0.5)]).unwrap();
         let strips = [strip(-0.5), strip(0.05), tube];
         let search = NearestStrip::new(&strips).unwrap();

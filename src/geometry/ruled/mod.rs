@@ -19,6 +19,7 @@ mod field;
 mod layout;
 pub mod optimise;
 mod pull;
+pub mod single;
 pub mod start;
 mod strip;
 mod system;

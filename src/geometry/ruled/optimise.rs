@@ -295,7 +295,8 @@ impl Run<'_> {
     }
 
     fn run(&self, free: Vec<f64>, progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Result<Optimised> {
-        let none = || Error::new(Status::InvalidValue, "expected strips whose squared distances are finite").at("strips");
+        let none =
+            || Error::new(Status::InvalidValue, "expected strips whose squared distances are finite").at("strips");
         let mut state = self.state(free).ok_or_else(none)?;
         let mut history = vec![iteration(&state, 0.0, 0.0, 0.0)];
         let tolerance = self.options.tolerance;

@@ -192,7 +192,8 @@ impl<'a> Terms<'a> {
             samples_per_boundary.push(number);
             let share = weights.proximity * scale * area / (total * (number * rows) as f64);
             for k in 0..number * rows {
-                let at = layout.weights(strip, parameter(basis, number, k / rows), (k % rows) as f64 / (rows - 1) as f64);
+                let at =
+                    layout.weights(strip, parameter(basis, number, k / rows), (k % rows) as f64 / (rows - 1) as f64);
                 samples.push(Sample { at, share, is_beyond: false });
             }
         }
@@ -221,7 +222,9 @@ impl<'a> Terms<'a> {
         let inside = feet.iter().filter(|foot| !foot.is_beyond);
         let largest_deviation = largest(&mut inside.map(|foot| foot.height.abs()));
         let mut parts = Parts::default();
-        let pull = |(foot, sample): (&SampleFoot, &Sample)| Pull::of_height(foot.at, sample.share, foot.height, foot.direction);
+        let pull = |(foot, sample): (&SampleFoot, &Sample)| {
+            Pull::of_height(foot.at, sample.share, foot.height, foot.direction)
+        };
         let mut pulls: Vec<Pull> = feet.iter().zip(&self.samples).map(pull).collect();
         parts.proximity = pulls.iter().map(|pull| pull.value).sum();
         let gaps = self.gaps(&strips)?;

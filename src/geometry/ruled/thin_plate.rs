@@ -60,14 +60,16 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::geometry::ruled::layout::Joints;
     use crate::geometry::ruled::Strip;
+    use crate::geometry::ruled::layout::Joints;
     use crate::mesh::curve::CubicBasis;
 
     #[test]
     fn the_energy_is_the_integral() {
         for (count, is_closed) in [(4, false), (8, false), (5, true)] {
-            let wild = |i: usize, phase: f64| DVec3::new((i as f64 + phase).sin(), (2.3 * i as f64 * phase).cos(), phase * i as f64);
+            let wild = |i: usize, phase: f64| {
+                DVec3::new((i as f64 + phase).sin(), (2.3 * i as f64 * phase).cos(), phase * i as f64)
+            };
             let control = [0.3, 1.7].map(|phase| (0..count).map(|i| wild(i, phase)).collect());
             let strip = Strip::new(CubicBasis::new(count, is_closed).unwrap(), control).unwrap();
             let (layout, z) = Layout::new(std::slice::from_ref(&strip), &Joints::default()).unwrap();
