@@ -166,17 +166,18 @@ impl<F: Fn(f64, f64) -> SurfaceJet + Sync> ParametricSurface<F> {
         [0, 1].map(|axis| (0..3).map(|k| weights[k] * self.parameters[corners[k] as usize][axis]).sum())
     }
 
-    fn clamped(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        [u.clamp(self.ranges[0][0], self.ranges[0][1]), v.clamp(self.ranges[1][0], self.ranges[1][1])]
+    fn clamped(&self, at: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k| snapped(at[k], self.ranges[k]))
     }
 
     /// The parameters of the nearest point to a finite point, by Newton's method on half the squared distance within the rectangle.
     ///
     /// With `d = S − p` the gradient is `(d·S_u, d·S_v)`, and the second derivatives are `S_u·S_u + d·S_uu` and so on. Where they
     /// are not positive definite the terms of `d` are left out, which leads downhill. A parameter at an end of its range that the
-    /// gradient pushes outward stays there.
+    /// gradient pushes outward stays there, and a step that would leave the rectangle ends where it meets its side: to take the
+    /// nearest point of the rectangle instead could lead uphill.
     pub fn nearest_parameters(&self, point: DVec3) -> [f64; 2] {
-        let mut at = self.seed(point);
+        let mut at = self.clamped(self.seed(point));
         for _ in 0..MOST_STEPS {
             let jet = self.at(at[0], at[1]);
             let apart = jet.point - point;
@@ -184,7 +185,7 @@ impl<F: Fn(f64, f64) -> SurfaceJet + Sync> ParametricSurface<F> {
             let is_held = [0, 1].map(|k| {
                 (at[k] <= self.ranges[k][0] && slope[k] >= 0.0) || (at[k] >= self.ranges[k][1] && slope[k] <= 0.0)
             });
-            let step = newton_step(&jet, apart, slope, is_held);
+            let step = step_within(at, self.ranges, is_held, |is_held| newton_step(&jet, apart, slope, is_held));
             let still = |k: usize| step[k].abs() <= 4.0 * f64::EPSILON * (self.ranges[k][1] - self.ranges[k][0]);
             if still(0) && still(1) {
                 break;
@@ -210,6 +211,40 @@ impl<F: Fn(f64, f64) -> SurfaceJet + Sync> ParametricSurface<F> {
         }
         at
     }
+}
+
+/// The parameter within a range, at an end that it is within round-off of: what is to be at the end is there to the last bit.
+pub(crate) fn snapped(at: f64, [low, high]: [f64; 2]) -> f64 {
+    let round_off = 4.0 * f64::EPSILON * (high - low).max(low.abs()).max(high.abs());
+    if at - low <= round_off {
+        low
+    } else if high - at <= round_off {
+        high
+    } else {
+        at
+    }
+}
+
+/// The step that `step` gives for the parameters that are not held, shortened to where it leaves the ranges. Where it would leave them
+/// from where it is, though downhill is inward, each parameter takes the step that it takes alone.
+pub(crate) fn step_within(
+    at: [f64; 2],
+    ranges: [[f64; 2]; 2],
+    is_held: [bool; 2],
+    step: impl Fn([bool; 2]) -> [f64; 2],
+) -> [f64; 2] {
+    let mut found = step(is_held);
+    let leaves = |k: usize| (at[k] <= ranges[k][0] && found[k] < 0.0) || (at[k] >= ranges[k][1] && found[k] > 0.0);
+    if leaves(0) || leaves(1) {
+        found = [step([is_held[0], true])[0], step([true, is_held[1]])[1]];
+    }
+    let room = |k: usize| match found[k] {
+        step if step > 0.0 => (ranges[k][1] - at[k]) / step,
+        step if step < 0.0 => (ranges[k][0] - at[k]) / step,
+        _ => f64::INFINITY,
+    };
+    let part = room(0).min(room(1)).min(1.0);
+    found.map(|step| part * step)
 }
 
 fn newton_step(jet: &SurfaceJet, apart: DVec3, slope: [f64; 2], is_held: [bool; 2]) -> [f64; 2] {

@@ -110,11 +110,10 @@ pub(super) fn step(
         rows.push(Row { coefficients, room });
     };
     if let Some(bound) = bounds.largest_deviation {
-        for foot in at.feet.iter().filter(|foot| !foot.is_beyond && foot.apart.length() > NEAR * bound) {
+        for foot in at.feet.iter().filter(|foot| !foot.is_beyond && foot.height.abs() > NEAR * bound) {
             let points: Vec<(u32, f64)> = foot.at.0.into_iter().zip(foot.at.1).collect();
-            let apart = foot.apart.length();
-            add(&points, foot.direction, bound - apart);
-            add(&points, -foot.direction, bound + apart);
+            add(&points, foot.direction, bound - foot.height);
+            add(&points, -foot.direction, bound + foot.height);
         }
     }
     if let Some(bound) = bounds.least_width {
@@ -140,8 +139,7 @@ pub(super) fn step(
 /// Unknowns are in units of the size, and the whole is scaled to second derivatives about 1.
 fn solve(model: &Model, rows: &[Row], size: f64) -> Option<Bounded> {
     let count = model.gradient.len();
-    let trace: f64 = model.entries.iter().filter(|(k, l, _)| k == l).map(|(_, _, value)| value).sum();
-    let scale = count.max(1) as f64 / (trace * size * size);
+    let scale = 1.0 / (model.mean_diagonal() * size * size);
     let (mut i, mut j, mut values) = (Vec::new(), Vec::new(), Vec::new());
     for &(k, l, value) in &model.entries {
         i.push(l as usize);

@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 use super::Strip;
 use super::pull::{across, along};
 use crate::mesh::ClosestPoints;
-use crate::mesh::reference::SurfaceJet;
+use crate::mesh::reference::{SurfaceJet, snapped, step_within};
 
 /// Columns of quads in each span, and rows, of the mesh in which the nearest strip is looked for.
 const COLUMNS_PER_SPAN: usize = 4;
@@ -68,14 +68,17 @@ impl<'a> NearestStrip<'a> {
         let (near, piece) = self.closest.nearest_on_piece(point);
         let (strip_index, column) = self.quads[piece / 2];
         let strip = &self.strips[strip_index as usize];
-        let mut at = seed(strip, f64::from(column) / COLUMNS_PER_SPAN as f64, near);
+        let mut at = inside(strip, seed(strip, f64::from(column) / COLUMNS_PER_SPAN as f64, near));
         let mut jet = strip.at(at[0], at[1]);
-        let mut held = [0.0; 2];
+        let mut is_held = [false; 2];
+        let around = if strip.basis().is_closed() { f64::INFINITY } else { 0.0 };
+        let ranges = [[-around, strip.length_u() + around], [0.0, 1.0]];
         for _ in 0..MOST_STEPS {
             let apart = jet.point - point;
             let slope = jet.first.map(|first| apart.dot(first));
-            held = held_ends(strip, at, slope);
-            let step = newton_step(&jet, apart, slope, held);
+            is_held = held_ends(strip, at, slope);
+            let free = |is_held: [bool; 2]| newton_step(&jet, apart, slope, is_held);
+            let step = step_within(at, ranges, is_held, free);
             if step[0].abs() <= 1e-14 * strip.length_u() && step[1].abs() <= 1e-14 {
                 break;
             }
@@ -88,9 +91,9 @@ impl<'a> NearestStrip<'a> {
             });
             let Some(next) = next else { break };
             (at, jet) = next;
-            held = held_ends(strip, at, jet.first.map(|first| (jet.point - point).dot(first)));
+            is_held = held_ends(strip, at, jet.first.map(|first| (jet.point - point).dot(first)));
         }
-        let directions = match held.map(|held| held != 0.0) {
+        let directions = match is_held {
             [false, false] => along(jet.normal()),
             [false, true] => across(jet.first[0].normalize_or_zero()),
             [true, false] => across(jet.first[1].normalize_or_zero()),
@@ -119,32 +122,25 @@ fn seed(strip: &Strip, u: f64, near: DVec3) -> [f64; 2] {
 /// Around a closed strip; the nearer end otherwise.
 fn inside(strip: &Strip, [u, v]: [f64; 2]) -> [f64; 2] {
     let length = strip.length_u();
-    let u = if strip.basis().is_closed() { u.rem_euclid(length) } else { u.clamp(0.0, length) };
-    [u, v.clamp(0.0, 1.0)]
+    let u = if strip.basis().is_closed() { u.rem_euclid(length) } else { snapped(u, [0.0, length]) };
+    [u, snapped(v, [0.0, 1.0])]
 }
 
-/// For each parameter −1 or 1 where it is at its first or last value and the distance falls beyond it, else 0.
-fn held_ends(strip: &Strip, at: [f64; 2], slope: [f64; 2]) -> [f64; 2] {
+/// Whether each parameter is at an end of its range beyond which the distance falls.
+fn held_ends(strip: &Strip, at: [f64; 2], slope: [f64; 2]) -> [bool; 2] {
     let last = [strip.length_u(), 1.0];
     [0, 1].map(|k| {
-        if k == 0 && strip.basis().is_closed() {
-            0.0
-        } else if at[k] <= 0.0 && slope[k] > 0.0 {
-            -1.0
-        } else if at[k] >= last[k] && slope[k] < 0.0 {
-            1.0
-        } else {
-            0.0
-        }
+        let is_around = k == 0 && strip.basis().is_closed();
+        !is_around && ((at[k] <= 0.0 && slope[k] > 0.0) || (at[k] >= last[k] && slope[k] < 0.0))
     })
 }
 
-fn newton_step(jet: &SurfaceJet, apart: DVec3, slope: [f64; 2], held: [f64; 2]) -> [f64; 2] {
+fn newton_step(jet: &SurfaceJet, apart: DVec3, slope: [f64; 2], is_held: [bool; 2]) -> [f64; 2] {
     let [u, v] = jet.first;
     let metric = [u.dot(u), u.dot(v), v.dot(v)];
     let full = [0, 1, 2].map(|k| metric[k] + apart.dot(jet.second[k]));
     let positive = |k: usize| if full[k] > 0.0 { full[k] } else { metric[k] };
-    match held.map(|held| held != 0.0) {
+    match is_held {
         [true, true] => [0.0, 0.0],
         [true, false] => [0.0, -slope[1] / positive(2)],
         [false, true] => [-slope[0] / positive(0), 0.0],

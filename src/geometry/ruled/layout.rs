@@ -130,6 +130,10 @@ fn check(strips: &[Strip], joints: &Joints) -> Result<()> {
                 return Err(Error::new(Status::InvalidValue, reason).at(place()));
             }
         }
+        if joints.is_shared && pair[0] == pair[1] {
+            let reason = "the two boundaries of a strip cannot be one";
+            return Err(Error::new(Status::InvalidValue, reason).at(format!("joints.pairs[{k}]")));
+        }
         let [first, second] = pair.map(|strip| strips[strip].basis());
         if first.is_closed() != second.is_closed() || (joints.is_shared && first != second) {
             let reason = format!(
@@ -193,6 +197,8 @@ mod tests {
         };
         assert_eq!(place(vec![[0, 2]]), "joints.pairs[0][1]");
         assert_eq!(place(vec![[0, 1], [0, 0]]), "joints.pairs[1][0]");
+        let shared = Joints { is_shared: true, ..Joints::ring(1) };
+        assert_eq!(Layout::new(&strips[..1], &shared).unwrap_err().place(), "joints.pairs[0]");
         assert_eq!(Layout::new(&[], &Joints::default()).unwrap_err().place(), "strips");
         let other = Strip::new(CubicBasis::new(5, true).unwrap(), [0, 1].map(|side| strips[0].control(side).to_vec()));
         let mixed = [strips[0].clone(), other.unwrap()];

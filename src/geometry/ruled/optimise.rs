@@ -1,9 +1,11 @@
 //! Strips that are nearest to the reference surface and to each other, under side conditions: a sequence of quadratic programs
 //! (Flöry et al. 2012, section 2.2).
 //!
-//! In every iteration the nearest points are found anew, the quadratic model of the terms is minimised in the unknowns that the side
-//! conditions leave free, and the step is halved until, with its own nearest points, it lowers what is minimised by a part of what
-//! the gradient promises (Armijo). Side conditions hold exactly in every iterate.
+//! In every iteration the nearest points are found anew, and the quadratic model of the terms is minimised in the unknowns that the
+//! side conditions leave free. The step must, with its own nearest points, lower what is minimised by a part of what the gradient
+//! promises (Armijo). Strips slide along the surface almost freely, so the model's least value can be far away, where it is no
+//! model: where the step fails, the model is damped (Levenberg and Marquardt), which is quicker than halving; if that is of no use the
+//! step is halved. Side conditions hold exactly in every iterate.
 
 use std::ops::ControlFlow;
 
@@ -23,6 +25,12 @@ const ARMIJO: f64 = 1e-4;
 
 /// How often a step is halved.
 const MOST_HALVINGS: usize = 20;
+
+/// What is added to the diagonal of the second derivatives, as a multiple of its mean: at least, at most, and the factor from one trial
+/// to the next.
+const LEAST_DAMPING: f64 = 1e-10;
+const MOST_DAMPING: f64 = 1.0;
+const DAMPING_FACTOR: f64 = 30.0;
 
 /// A first-order decrease below this multiple of the value is round-off of its sums.
 const NO_DECREASE: f64 = 1e-14;
@@ -209,6 +217,16 @@ struct State {
     value: f64,
 }
 
+/// What an iteration led to.
+enum Next {
+    /// An iterate, the first-order decrease that was promised, and the part of the step.
+    State(Box<State>, f64, f64),
+    /// Nothing to gain.
+    Flat,
+    /// Nothing found.
+    None,
+}
+
 /// A direction, and the first-order decrease along it.
 struct Direction {
     step: Vec<f64>,
@@ -225,12 +243,11 @@ impl Run<'_> {
         value.is_finite().then_some(State { free, points, strips, at, excess, value })
     }
 
-    fn direction(&self, state: &State) -> Result<Option<Direction>> {
-        let model = Model::new(&self.terms, &state.at, &state.points, &self.elimination);
+    fn direction(&self, state: &State, model: &Model) -> Result<Option<Direction>> {
         let size = self.terms.size;
         let (step, gain) = if self.options.bounds.is_any() {
             let (at, which) = ((&state.at, &state.strips[..]), (&self.terms.layout, &self.elimination));
-            match bounds::step(&self.options.bounds, &model, at, which, size) {
+            match bounds::step(&self.options.bounds, model, at, which, size) {
                 None => return Ok(None),
                 Some(bounded) => (bounded.step, (state.excess - bounded.excess) / size),
             }
@@ -244,19 +261,37 @@ impl Run<'_> {
         Ok(Some(Direction { step, promised: gain - slope }))
     }
 
-    /// The next iterate along a direction.
-    fn line_search(&self, from: &State, along: &Direction) -> Option<(State, f64)> {
-        let mut part = 1.0;
-        for _ in 0..=MOST_HALVINGS {
-            let free = from.free.iter().zip(&along.step).map(|(x, d)| x + part * d).collect();
-            let found = self.state(free);
-            let bound = from.value - ARMIJO * part * along.promised;
-            if let Some(next) = found.filter(|next| next.value <= bound && next.value < from.value) {
-                return Some((next, part));
+    /// The iterate at a part of a direction, if it is low enough.
+    fn trial(&self, from: &State, along: &Direction, part: f64) -> Option<State> {
+        let free = from.free.iter().zip(&along.step).map(|(x, d)| x + part * d).collect();
+        let bound = from.value - ARMIJO * part * along.promised;
+        self.state(free).filter(|next| next.value <= bound && next.value < from.value)
+    }
+
+    /// The next iterate; `damping` becomes what it took.
+    fn next(&self, state: &State, damping: &mut f64) -> Result<Next> {
+        let model = Model::new(&self.terms, &state.at, &state.points, &self.elimination);
+        let mut last = None;
+        loop {
+            if let Some(direction) = self.direction(state, &model.damped(*damping))? {
+                if !(direction.promised > NO_DECREASE * state.value) {
+                    let is_flat = direction.promised.abs() <= NO_DECREASE * state.value;
+                    return Ok(if is_flat { Next::Flat } else { Next::None });
+                }
+                if let Some(next) = self.trial(state, &direction, 1.0) {
+                    return Ok(Next::State(Box::new(next), direction.promised, 1.0));
+                }
+                last = Some(direction);
             }
-            part *= 0.5;
+            if *damping >= MOST_DAMPING {
+                break;
+            }
+            *damping *= DAMPING_FACTOR;
         }
-        None
+        let Some(direction) = last else { return Ok(Next::None) };
+        let parts = (1..=MOST_HALVINGS).map(|k| 0.5_f64.powi(k as i32));
+        let found = parts.filter_map(|part| self.trial(state, &direction, part).map(|next| (next, part))).next();
+        Ok(found.map_or(Next::None, |(next, part)| Next::State(Box::new(next), direction.promised, part)))
     }
 
     fn run(&self, free: Vec<f64>, progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Result<Optimised> {
@@ -265,6 +300,7 @@ impl Run<'_> {
         let mut state = self.state(free).ok_or_else(none)?;
         let mut history = vec![iteration(&state, 0.0, 0.0, 0.0)];
         let tolerance = self.options.tolerance;
+        let mut damping = LEAST_DAMPING;
         let stop = loop {
             let done = history.len() - 1;
             if progress(&Progress { iteration: done, last: history[done] }).is_break() {
@@ -276,18 +312,18 @@ impl Run<'_> {
             if done == self.options.max_iterations {
                 break Stop::MostIterations;
             }
-            let Some(direction) = self.direction(&state)? else { break Stop::LineSearch };
-            if !(direction.promised > NO_DECREASE * state.value) {
-                let is_flat = direction.promised.abs() <= NO_DECREASE * state.value;
-                break if is_flat { Stop::Converged } else { Stop::LineSearch };
-            }
-            let Some((next, taken)) = self.line_search(&state, &direction) else { break Stop::LineSearch };
+            let (next, promised, taken) = match self.next(&state, &mut damping)? {
+                Next::State(next, promised, taken) => (*next, promised, taken),
+                Next::Flat => break Stop::Converged,
+                Next::None => break Stop::LineSearch,
+            };
+            damping = (damping / DAMPING_FACTOR).max(LEAST_DAMPING);
             let moves = next.points.iter().zip(&state.points).map(|(a, b)| a.distance(*b));
             let moved = moves.fold(0.0, f64::max);
             let decrease = state.value - next.value;
             let is_small = moved <= tolerance * self.terms.size || decrease <= tolerance * state.value;
             state = next;
-            history.push(iteration(&state, direction.promised, taken, moved));
+            history.push(iteration(&state, promised, taken, moved));
             // A step that was cut is small for that.
             if is_small && taken == 1.0 {
                 break Stop::Converged;

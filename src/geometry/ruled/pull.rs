@@ -30,6 +30,17 @@ impl Pull {
             curvature: 2.0 * weight * directions,
         }
     }
+
+    /// `weight height²`, the gradient of `height` being given.
+    pub(super) fn of_height(at: ([u32; 8], [f64; 8]), weight: f64, height: f64, gradient: DVec3) -> Self {
+        Self {
+            points: at.0,
+            weights: at.1,
+            value: weight * height * height,
+            slope: 2.0 * weight * height * gradient,
+            curvature: 2.0 * weight * along(gradient),
+        }
+    }
 }
 
 /// `d dᵀ`.

@@ -10,10 +10,6 @@ use crate::linalg::elimination::Elimination;
 use crate::linalg::least_squares::LeastSquares;
 use crate::linalg::symmetric::SymmetricMatrix;
 
-/// Added to the diagonal of the second derivatives, relative to its entries and to their mean: strips may slide along the reference
-/// surface, which changes nothing to second order.
-const DAMPING: f64 = 1e-10;
-
 /// `g·d + ½ dᵀ H d`.
 #[derive(Clone, Debug)]
 pub(super) struct Model {
@@ -78,29 +74,30 @@ impl Model {
             }
         }
         let gradient = elimination.reduce(&flat(&gradient(terms, at, points)));
-        let mut model = Self { entries, gradient };
-        model.damp();
-        model
-    }
-
-    fn damp(&mut self) {
-        let count = self.gradient.len();
-        let mean = self.entries.iter().filter(|(k, l, _)| k == l).map(|(_, _, value)| value).sum::<f64>()
-            / count.max(1) as f64;
-        let least = if mean > 0.0 { DAMPING * mean } else { 1.0 };
+        // What no term draws has a place on the diagonal too.
+        let count = gradient.len();
         let mut is_there = vec![false; count];
-        for (k, l, value) in self.entries.iter_mut().filter(|(k, l, _)| k == l) {
-            debug_assert_eq!(k, l, "entries of the diagonal");
-            *value += DAMPING * *value + least;
-            is_there[*k as usize] = true;
-        }
-        let missing = (0..count as u32).filter(|&k| !is_there[k as usize]).map(|k| (k, k, least));
-        let missing: Vec<(u32, u32, f64)> = missing.collect();
-        self.entries.extend(missing);
-        self.entries.sort_by_key(|&(k, l, _)| (k, l));
+        entries.iter().filter(|(k, l, _)| k == l).for_each(|&(k, ..)| is_there[k as usize] = true);
+        entries.extend((0..count as u32).filter(|&k| !is_there[k as usize]).map(|k| (k, k, 0.0)));
+        entries.sort_by_key(|&(k, l, _)| (k, l));
+        Self { entries, gradient }
     }
 
-    /// The step to the least value; none if it is lost in round-off.
+    /// The mean of the diagonal.
+    pub(super) fn mean_diagonal(&self) -> f64 {
+        let sum: f64 = self.entries.iter().filter(|(k, l, _)| k == l).map(|(_, _, value)| value).sum();
+        sum / self.gradient.len().max(1) as f64
+    }
+
+    /// The model with `damping` times the mean of the diagonal added to it.
+    pub(super) fn damped(&self, damping: f64) -> Self {
+        let mean = self.mean_diagonal();
+        let added = if mean > 0.0 { damping * mean } else { 1.0 };
+        let damp = |&(k, l, value): &(u32, u32, f64)| (k, l, if k == l { value + added } else { value });
+        Self { entries: self.entries.iter().map(damp).collect(), gradient: self.gradient.clone() }
+    }
+
+    /// The step to the least value of a damped model; none if it is lost in round-off.
     pub(super) fn step(&self) -> Result<Option<Vec<f64>>> {
         let count = self.gradient.len();
         if count == 0 {

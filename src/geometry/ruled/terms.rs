@@ -18,12 +18,12 @@ use rayon::prelude::*;
 use super::Strip;
 use super::coverage::NearestStrip;
 use super::layout::{Joints, Layout};
-use super::pull::{Form, Pull, across, along};
+use super::pull::{Form, Pull, across};
 use super::thin_plate;
 use crate::error::{Error, Result, Status, finite};
 use crate::mesh::TriangleMesh;
 use crate::mesh::curve::NearestOnCurve;
-use crate::mesh::reference::ReferenceSurface;
+use crate::mesh::reference::{ReferenceSurface, SurfaceFoot};
 
 /// Nearer than this multiple of the diagonal the direction to the foot is round-off, and the normal there is taken.
 const NO_DIRECTION: f64 = 1e-10;
@@ -31,6 +31,9 @@ const NO_DIRECTION: f64 = 1e-10;
 /// A sample is beyond the reference surface's boundary by more than this multiple of the diagonal: a point of a mesh's rim, which
 /// is beyond the rim by its chords, counts as inside.
 const BEYOND: f64 = 1e-6;
+
+/// The step of a difference quotient along the boundary, as a multiple of the diagonal.
+const DIFFERENCE: f64 = 1e-6;
 
 /// The cosine between a boundary and the way to an end of it above which that end is a corner.
 const CORNER: f64 = 1e-9;
@@ -150,9 +153,9 @@ pub(super) struct Terms<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SampleFoot {
     pub(super) at: ([u32; 8], [f64; 8]),
-    /// From the foot to the sample; of one beyond the boundary only the part along the normal.
-    pub(super) apart: DVec3,
-    /// The unit vector along it.
+    /// The distance, of one beyond the boundary that to the tangent plane, with a sign.
+    pub(super) height: f64,
+    /// Its gradient by the sample's point.
     pub(super) direction: DVec3,
     pub(super) is_beyond: bool,
 }
@@ -217,10 +220,10 @@ impl<'a> Terms<'a> {
         let feet: Vec<SampleFoot> = self.samples.par_iter().map(|sample| self.foot(sample, points)).collect();
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let inside = feet.iter().filter(|foot| !foot.is_beyond);
-        let largest_deviation = largest(&mut inside.map(|foot| foot.apart.length()));
+        let largest_deviation = largest(&mut inside.map(|foot| foot.height.abs()));
         let mut parts = Parts::default();
         let pull = |(foot, sample): (&SampleFoot, &Sample)| {
-            Pull::new(foot.at, sample.share, foot.apart, along(foot.direction))
+            Pull::of_height(foot.at, sample.share, foot.height, foot.direction)
         };
         let mut pulls: Vec<Pull> = feet.iter().zip(&self.samples).map(pull).collect();
         parts.proximity = pulls.iter().map(|pull| pull.value).sum();
@@ -240,12 +243,29 @@ impl<'a> Terms<'a> {
         let foot = self.aim.reference.nearest(point);
         let apart = point - foot.point;
         let is_beyond = foot.overhang > 0.0;
-        // Beyond the boundary only what is along the normal counts: whatever is across it would draw strips back.
-        let apart = if is_beyond { apart.dot(foot.normal) * foot.normal } else { apart };
+        if is_beyond {
+            return self.foot_beyond(sample, point, &foot);
+        }
         let is_direction = apart.length() > NO_DIRECTION * self.size;
         let direction = if is_direction { apart.normalize() } else { foot.normal };
+        SampleFoot { at: sample.at, height: apart.dot(direction), direction, is_beyond: sample.is_beyond }
+    }
+
+    /// Beyond the boundary only the distance `e = n·(x − q)` to the tangent plane at the foot `q` counts: all of the distance would draw
+    /// strips back. As `x` moves along the boundary, `q` and `n` go with it and `e` changes by how the normal turns; as it moves in the
+    /// plane across both, they stay. So `∇e = n + (∂e/∂t) t`, the derivative along the boundary being a difference quotient.
+    fn foot_beyond(&self, sample: &Sample, point: DVec3, foot: &SurfaceFoot) -> SampleFoot {
+        let height = |point: DVec3| {
+            let foot = self.aim.reference.nearest(point);
+            foot.normal.dot(point - foot.point)
+        };
+        let apart = foot.normal.dot(point - foot.point);
+        let along = foot.normal.cross(point - foot.point).normalize_or_zero();
+        let h = DIFFERENCE * self.size;
+        let turn = (height(point + h * along) - height(point - h * along)) / (2.0 * h);
+        let gradient = foot.normal + turn * along;
         let is_beyond = sample.is_beyond || foot.overhang > BEYOND * self.size;
-        SampleFoot { at: sample.at, apart, direction, is_beyond }
+        SampleFoot { at: sample.at, height: apart, direction: gradient, is_beyond }
     }
 
     /// The pulls between neighbours, and the distances.
