@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::strip::Strip;
 use crate::error::{Error, Result, Status};
 use crate::mesh::TriangleMesh;
-use crate::mesh::curve::{Curve, NearestOnCurve};
+use crate::mesh::curve::NearestOnCurve;
 use crate::problem::{Problem, Reference, Signature};
 
 /// A ruling's end is beside the next strip's boundary, not beyond its end, while the cosine of the angle is below this.
