@@ -86,6 +86,24 @@ pub fn mesh(strips: &[Strip], columns_per_span: usize, rows: usize) -> Result<(M
     Ok(joined(strips.iter().map(one).collect::<Result<_>>()?))
 }
 
+/// The unit normals of the strips at the points of [`mesh`], for zebra stripes; zero where a strip has none.
+///
+/// # Errors
+/// As [`mesh`].
+pub fn mesh_normals(strips: &[Strip], columns_per_span: usize, rows: usize) -> Result<Vec<DVec3>> {
+    let count = mesh(strips, columns_per_span, rows)?.0.points.len();
+    let mut normals = Vec::with_capacity(count);
+    for strip in strips {
+        let columns = columns_per_span * strip.basis().spans() + 1;
+        let at = |i: usize, last: usize| i as f64 / last as f64;
+        normals.extend((0..columns * rows).map(|i| {
+            let (u, v) = (at(i % columns, columns - 1), at(i / columns, rows - 1));
+            strip.at(strip.length_u() * u, v).normal()
+        }));
+    }
+    Ok(normals)
+}
+
 /// All trimmed strips as one mesh of triangles, with the strip of each. `trimmed` are those of [`trim`](super::trim::trim).
 ///
 /// # Errors
@@ -189,6 +207,9 @@ mod tests {
         assert_eq!((all.faces.len(), of_strip.len(), all.points.len()), (12, 12, 28));
         assert_eq!((of_strip[5], of_strip[6]), (0, 1));
         all.check().unwrap();
+        let normals = mesh_normals(&strips, 3, 2).unwrap();
+        assert!(normals.len() == 28 && normals.iter().all(|normal| normal.distance(DVec3::Z) < 1e-15));
+        assert!(trimmed[0].normals(&strips[0]).iter().all(|normal| normal.distance(DVec3::Z) < 1e-15));
         let (cut, of_strip) = trimmed_mesh(&strips, &trimmed).unwrap();
         cut.check().unwrap();
         assert_eq!(cut.faces.len(), of_strip.len());

@@ -127,7 +127,7 @@ mod tests {
     fn strips_are_read_as_they_were_written() {
         let text = to_json(&strips());
         assert_eq!(from_json(&text).unwrap(), strips());
-        assert_eq!(text.lines().count(), 7);
+        assert_eq!(text.lines().count(), 8);
         assert_eq!(from_json(&to_json(&[])).unwrap(), []);
     }
 

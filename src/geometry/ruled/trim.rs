@@ -125,6 +125,11 @@ impl Trimmed {
         }
     }
 
+    /// The unit normals of the strip at the corners, for zebra stripes; zero where it has none.
+    pub fn normals(&self, strip: &Strip) -> Vec<DVec3> {
+        self.parameters.iter().map(|&[u, v]| strip.at(u, v).normal()).collect()
+    }
+
     /// The parts of the ruling at `u` that are kept, ascending, each from one `v` to another.
     pub fn ruling_parts(&self, u: f64) -> Vec<[f64; 2]> {
         let mut crossings = Vec::new();

@@ -7,8 +7,11 @@ use crate::error::Result;
 use crate::geometry::ruled::Strip;
 use crate::mesh::TriangleMesh;
 
-/// An edge is halved so often at most: where its nearest points jump, no halving helps.
+/// An edge is halved so often at most: where its nearest points jump, no halving helps;
 const MOST_HALVINGS: usize = 32;
+
+/// and into so many pieces: near the strip's centres of curvature nearest points are all jumps.
+const MOST_PIECES: usize = 2000;
 
 /// Where, beside its middle, the nearest points of a piece of an edge are compared with a straight line: not at a simple fraction,
 /// where a piece that is bent at one point could look straight.
@@ -51,7 +54,8 @@ impl<F: Fn(DVec3) -> [f64; 2]> Projection<'_, F> {
         let corners: Vec<Located> = points.iter().map(|&point| self.located(point)).collect();
         let mut curve = Vec::with_capacity(2 * corners.len());
         for (i, &corner) in corners.iter().enumerate() {
-            self.extend(corner, corners[(i + 1) % corners.len()], MOST_HALVINGS, &mut curve);
+            let (next, mut budget) = (corners[(i + 1) % corners.len()], MOST_PIECES);
+            self.extend(corner, next, MOST_HALVINGS, &mut budget, &mut curve);
         }
         let curve = self.simplified(curve);
         if self.strip.basis().is_closed() { at_seam(&curve, self.strip.length_u()) } else { vec![curve] }
@@ -60,23 +64,36 @@ impl<F: Fn(DVec3) -> [f64; 2]> Projection<'_, F> {
     /// Adds the nearest points from `start`, which is added by the piece before, to `end`: as many as a polygon needs.
     ///
     /// Where a point of the boundary passes beyond the strip, its nearest point turns and runs along the strip's own boundary;
-    /// halving meets such a bend up to the tolerance.
-    fn extend(&self, start: Located, end: Located, halvings: usize, curve: &mut Contour) {
+    /// halving meets such a bend up to the tolerance. Along that boundary it does not matter how a curve runs, as no face is
+    /// beyond: there, where most of the reference's boundary has its nearest points, nothing is halved.
+    fn extend(&self, start: Located, end: Located, halvings: usize, budget: &mut usize, curve: &mut Contour) {
+        *budget = budget.saturating_sub(1);
         let apart = |fraction: f64| {
             let found = self.located(start.point.lerp(end.point, fraction));
             let straight = self.between(start.at, end.at, fraction);
-            (
-                found,
-                self.strip.at(found.at[0], found.at[1]).point.distance(self.strip.at(straight[0], straight[1]).point),
-            )
+            let found_point = self.strip.at(found.at[0], found.at[1]).point;
+            (found, found_point.distance(self.strip.at(straight[0], straight[1]).point))
         };
         let (middle, bend) = apart(0.5);
-        if halvings == 0 || (bend <= self.tolerance && apart(PROBE).1 <= self.tolerance) {
+        let is_straight =
+            |other: Located, bend: f64| bend <= self.tolerance || self.are_on_one_side([start.at, other.at, end.at]);
+        let is_probed = || {
+            let (probe, bend) = apart(PROBE);
+            is_straight(probe, bend)
+        };
+        if halvings == 0 || *budget == 0 || (is_straight(middle, bend) && is_probed()) {
             curve.push(end.at);
         } else {
-            self.extend(start, middle, halvings - 1, curve);
-            self.extend(middle, end, halvings - 1, curve);
+            self.extend(start, middle, halvings - 1, budget, curve);
+            self.extend(middle, end, halvings - 1, budget, curve);
         }
+    }
+
+    /// Whether parameters are on one side of the rectangle.
+    fn are_on_one_side(&self, all: [[f64; 2]; 3]) -> bool {
+        let on = |axis: usize, end: f64| all.iter().all(|at| at[axis] == end);
+        let is_at_end = !self.strip.basis().is_closed() && (on(0, 0.0) || on(0, self.strip.length_u()));
+        is_at_end || on(1, 0.0) || on(1, 1.0)
     }
 
     /// Without the corners that a straight line from one corner to a later one passes within a part of the tolerance: the points of
