@@ -11,7 +11,6 @@ use super::optimise::{Optimised, Options, Progress, Task, optimise};
 use super::start::{Rulings, StartOptions, start};
 use crate::error::{Error, Result, Status};
 use crate::linalg::small::{least_eigenvector, scatter};
-use crate::mesh::curve::End;
 use crate::mesh::reference::ReferenceSurface;
 
 /// Rulings in each span of which the axis is found.
