@@ -163,7 +163,10 @@ mod tests {
             assert!(ruling.dot(found.axis).abs() <= 1e-10);
         }
         assert!(found.tilt_rad[1] <= 1e-10 && found.tilt_rad[0] < 1e-4, "{:?}", found.tilt_rad);
-        let there = |p: &DVec3| surface.nearest(*p).point.distance(*p);
+        let there = |p: &DVec3| {
+            let foot = surface.nearest(*p);
+            foot.normal.dot(*p - foot.point).abs()
+        };
         let deviation = strip.mesh(201, 9).unwrap().points.iter().map(there).fold(0.0, f64::max);
         let back = strip.surface().unwrap();
         let back = cover.iter().map(|p| back.nearest(*p).point.distance(*p)).fold(0.0, f64::max);
@@ -175,12 +178,14 @@ mod tests {
     fn the_conoid_condition_costs_what_the_surface_is_not() {
         let surface = conoid(0.15);
         let (first, second) = (curve(&surface, 1.0), curve(&surface, 1.6));
-        let find = |is_conoidal| {
-            let options = SingleOptions { is_conoidal, ..SingleOptions::default() };
+        let place = |i: u32| surface.at(0.05 * f64::from(i % 41), 1.0 + 0.1 * f64::from(i / 41)).point;
+        let cover: Vec<DVec3> = (0..41 * 7).map(place).collect();
+        let find = |is_conoidal, has_fixed_ends| {
+            let options = SingleOptions { is_conoidal, has_fixed_ends, ..SingleOptions::default() };
             let rulings = Rulings::Proportional;
-            single([&first, &second], false, rulings, (&surface, &[]), &options, &mut on).unwrap()
+            single([&first, &second], false, rulings, (&surface, &cover), &options, &mut on).unwrap()
         };
-        let (general, conoidal) = (find(false), find(true));
+        let (general, conoidal) = (find(false, false), find(true, false));
         assert!(
             conoidal.tilt_rad[1] < 1e-10 && general.tilt_rad[1] > 1e-3,
             "{:?} {:?}",
@@ -195,6 +200,7 @@ mod tests {
             assert!(found.strip().area() > 0.8 * found.start.area());
         }
         // Ends stay where they were drawn.
+        let (general, conoidal) = (find(false, true), find(true, true));
         assert!(general.strip().control(1)[11].distance(second[4000]) < 1e-14);
         assert!(conoidal.strip().control(0)[0].distance(first[0]) < 1e-14);
     }
