@@ -278,4 +278,4 @@ fn area(strip: &Strip, [a, b, c]: [[f64; 2]; 3]) -> f64 {
 }
 
 #[cfg(test)]
-pub mod tests;
+pub(super) mod tests;
