@@ -54,6 +54,13 @@ pub struct Task<'a> {
     pub conditions: &'a [Condition],
 }
 
+impl std::fmt::Debug for Task<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let counts = (self.strips.len(), self.cover.len(), self.conditions.len());
+        f.debug_struct("Task").field("counts", &counts).field("joints", self.joints).finish_non_exhaustive()
+    }
+}
+
 /// How it is optimised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
