@@ -208,18 +208,6 @@ pub fn optimise(
     run.run(free, progress)
 }
 
-impl std::fmt::Debug for Task<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let cover = self.cover.len();
-        f.debug_struct("Task")
-            .field("strips", &self.strips)
-            .field("joints", &self.joints)
-            .field("cover", &cover)
-            .field("conditions", &self.conditions)
-            .finish_non_exhaustive()
-    }
-}
-
 struct Run<'a> {
     terms: Terms<'a>,
     elimination: Elimination,
