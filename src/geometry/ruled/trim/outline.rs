@@ -31,6 +31,9 @@ struct Projection<'a, F> {
     tolerance: f64,
 }
 
+/// Parameters this near to an end of their range, over the range, are on it.
+const ON_SIDE: f64 = 1e-12;
+
 /// Corners are dropped within this part of the tolerance,
 const SIMPLER: f64 = 0.1;
 
@@ -46,7 +49,14 @@ struct Located {
 
 impl<F: Fn(DVec3) -> [f64; 2]> Projection<'_, F> {
     fn located(&self, point: DVec3) -> Located {
-        Located { point, at: (self.locate)(point) }
+        let [u, v] = (self.locate)(point);
+        // Newton's method comes to a side of the rectangle up to rounding.
+        let put = |at: f64, last: f64| match at / last {
+            part if part < ON_SIDE => 0.0,
+            part if part > 1.0 - ON_SIDE => last,
+            _ => at,
+        };
+        Located { point, at: [put(u, self.strip.length_u()), put(v, 1.0)] }
     }
 
     /// A loop as closed polygons: one, but of a closed strip a polygon for each part between two crossings of the seam.
