@@ -41,7 +41,7 @@ pub(super) fn outline(
         ends.map(|(side, u)| flat(strip.boundary(side).point(u)).dot(towards)).fold(f64::NEG_INFINITY, f64::max)
     };
     let sides = [-reach(-DVec2::Y) - depth, reach(DVec2::Y) + depth];
-    let rulings = parameters.map(|u| strip.ruling(u).map(|end| flat(end)));
+    let rulings = parameters.map(|u| strip.ruling(u).map(&flat));
     let chords = [0, 1].map(|side: usize| rulings[1][side] - rulings[0][side]);
     let length = rulings.iter().map(|[a, b]| a.distance(*b)).fold(0.0, f64::max);
     let slanted = chords.map(|chord| {
