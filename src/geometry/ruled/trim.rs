@@ -32,14 +32,14 @@ use crate::error::{Error, Result, Status};
 use crate::mesh::reference::ReferenceMesh;
 use crate::mesh::{Mesh, ReferenceSurface};
 
-/// Faces below this part of the rectangle of parameters are what rounding leaves between two curves that are one.
-const NO_FACE: f64 = 1e-10;
+/// Faces of less area than this, over that of all parameters, are what rounding leaves between two curves that are one.
+const NO_FACE: f64 = 1e-8;
 
-/// Parameters this near to an end of their range, over the range, are on it.
-const OFF_END: f64 = 1e-12;
+/// Coordinates of the unit square this near to a side are on it: the grid is a few times 1e-9 wide.
+const OFF_END: f64 = 1e-8;
 
-/// Corners this near to a ruling between two columns, in spans, are on it.
-const ON_COLUMN: f64 = 1e-9;
+/// Corners this near to a ruling between two columns, in the unit square, are on it.
+const ON_COLUMN: f64 = 1e-8;
 
 /// Each face is judged at so many points.
 const JUDGES: usize = 9;
@@ -176,12 +176,14 @@ pub fn trim(strips: &[Strip], reference: &ReferenceMesh<'_>, options: &TrimOptio
 
 fn trim_one(strip: &Strip, reference: &ReferenceMesh<'_>, options: &TrimOptions) -> Result<Trimmed> {
     let tolerance = options.tolerance * reference.diagonal();
-    let outlines = outline::outlines(strip, reference.mesh(), tolerance)?;
+    let mut outlines = outline::outlines(strip, reference.mesh(), tolerance)?;
+    // The rectangle as a square: on the grid of 32 bits that polygons are clipped on, both parameters are as fine.
     let last = strip.length_u();
-    let rectangle: Contour = vec![[0.0, 0.0], [last, 0.0], [last, 1.0], [0.0, 1.0]];
+    outlines.iter_mut().flatten().for_each(|at| at[0] /= last);
+    let square: Contour = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let mut kept: Vec<Vec<Contour>> = Vec::new();
     for rule in [OverlayRule::Intersect, OverlayRule::Difference] {
-        for face in rectangle.overlay_as::<i64>(&outlines, rule, FillRule::EvenOdd) {
+        for face in square.overlay_as::<i32>(&outlines, rule, FillRule::EvenOdd) {
             if is_inside(&face, strip, reference, tolerance) {
                 kept.push(face);
             }
@@ -189,60 +191,62 @@ fn trim_one(strip: &Strip, reference: &ReferenceMesh<'_>, options: &TrimOptions)
     }
     let mut pieces = match kept.len() {
         0 => Vec::new(),
-        _ => FloatOverlay::<[f64; 2], i64>::from_subj(&kept).overlay(OverlayRule::Subject, FillRule::NonZero),
+        _ => FloatOverlay::<[f64; 2], i32>::from_subj(&kept).overlay(OverlayRule::Subject, FillRule::NonZero),
     };
-    pieces.iter_mut().flatten().flatten().for_each(|at| *at = [snapped(at[0], last), snapped(at[1], 1.0)]);
-    let (parameters, triangles) = triangulate(&pieces, strip, options.columns_per_span);
+    pieces.iter_mut().flatten().flatten().for_each(|at| *at = at.map(snapped));
+    let (mut parameters, triangles) = triangulate(&pieces, options.columns_per_span * strip.basis().spans());
+    let to_spans = |at: &mut [f64; 2]| at[0] *= last;
+    pieces.iter_mut().flatten().flatten().for_each(to_spans);
+    parameters.iter_mut().for_each(to_spans);
     let area = triangles.iter().map(|corners| area(strip, corners.map(|i| parameters[i as usize]))).sum();
     Ok(Trimmed { pieces, parameters, triangles, area })
 }
 
-/// A parameter, put on the end of its range from 0 to `last` where rounding to integers took it off.
-fn snapped(parameter: f64, last: f64) -> f64 {
-    if parameter <= OFF_END * last {
+/// A coordinate of the unit square, put on a side where rounding to the grid took it off.
+fn snapped(coordinate: f64) -> f64 {
+    if coordinate <= OFF_END {
         0.0
-    } else if parameter >= (1.0 - OFF_END) * last {
-        last
+    } else if coordinate >= 1.0 - OFF_END {
+        1.0
     } else {
-        parameter
+        coordinate
     }
 }
 
 /// Whether the reference is beside a face: whether it is beside most of the points in its largest triangles.
 fn is_inside(face: &Vec<Contour>, strip: &Strip, reference: &ReferenceMesh<'_>, tolerance: f64) -> bool {
-    let Triangulation { points, indices } = face.as_slice().triangulate_as::<i64>().to_triangulation::<u32>();
+    let Triangulation { points, indices } = face.as_slice().triangulate_as::<i32>().to_triangulation::<u32>();
     let size = |[a, b, c]: [[f64; 2]; 3]| 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
     let triangle = |corners: &[u32]| [0, 1, 2].map(|k| points[corners[k] as usize]);
     let mut triangles: Vec<_> = indices.chunks_exact(3).map(triangle).collect();
-    if triangles.iter().copied().map(size).sum::<f64>() < NO_FACE * strip.length_u() {
+    if triangles.iter().copied().map(size).sum::<f64>() < NO_FACE {
         return false;
     }
     triangles.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
     let is_beside = |[a, b, c]: &[[f64; 2]; 3]| {
         let middle = [0, 1].map(|k| (a[k] + b[k] + c[k]) / 3.0);
-        reference.nearest(strip.at(middle[0], middle[1]).point).overhang <= tolerance
+        reference.nearest(strip.at(strip.length_u() * middle[0], middle[1]).point).overhang <= tolerance
     };
     let judges = &triangles[..triangles.len().min(JUDGES)];
     let votes = judges.iter().filter(|triangle| is_beside(triangle)).count();
     2 * votes > judges.len()
 }
 
-/// The pieces cut into columns between rulings, and these into triangles; equal corners are one.
-fn triangulate(pieces: &[Vec<Contour>], strip: &Strip, columns_per_span: usize) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
+/// The pieces, in the unit square, cut into columns between rulings, and these into triangles; equal corners are one.
+fn triangulate(pieces: &[Vec<Contour>], columns: usize) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
     if pieces.is_empty() {
         return (Vec::new(), Vec::new());
     }
-    let columns = columns_per_span * strip.basis().spans();
-    let line = |i: usize| [-1.0, 2.0].map(|v| [i as f64 / columns_per_span as f64, v]).to_vec();
+    let line = |i: usize| [-1.0, 2.0].map(|v| [i as f64 / columns as f64, v]).to_vec();
     let lines: Vec<Contour> = (1..columns).map(line).collect();
     // A side of a piece that is a ruling between two columns up to rounding is put on it, or a sliver would be left.
     let mut pieces = pieces.to_vec();
     for at in pieces.iter_mut().flatten().flatten() {
-        let nearest = (at[0] * columns_per_span as f64).round() / columns_per_span as f64;
+        let nearest = (at[0] * columns as f64).round() / columns as f64;
         at[0] = if (at[0] - nearest).abs() < ON_COLUMN { nearest } else { at[0] };
     }
-    let cut = pieces.slice_by_as::<i64>(&lines, FillRule::NonZero);
-    let Triangulation { points, indices } = cut.as_slice().triangulate_as::<i64>().to_triangulation::<u32>();
+    let cut = pieces.slice_by_as::<i32>(&lines, FillRule::NonZero);
+    let Triangulation { points, indices } = cut.as_slice().triangulate_as::<i32>().to_triangulation::<u32>();
     let mut order: Vec<usize> = (0..points.len()).collect();
     let compare = |a: &[f64; 2], b: &[f64; 2]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
     order.sort_unstable_by(|&i, &j| compare(&points[i], &points[j]).then(i.cmp(&j)));
@@ -253,8 +257,7 @@ fn triangulate(pieces: &[Vec<Contour>], strip: &Strip, columns_per_span: usize) 
         }
         number[i] = unique.len() as u32 - 1;
     }
-    let parameters: Vec<[f64; 2]> =
-        unique.into_iter().map(|[u, v]| [snapped(u, strip.length_u()), snapped(v, 1.0)]).collect();
+    let parameters: Vec<[f64; 2]> = unique.into_iter().map(|at: [f64; 2]| at.map(snapped)).collect();
     let turn = |[a, b, c]: [[f64; 2]; 3]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let oriented = |corners: &[u32]| {
         let corners = [0, 1, 2].map(|k| number[corners[k] as usize]);

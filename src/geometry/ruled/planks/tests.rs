@@ -120,8 +120,7 @@ fn planks_hold_all_rulings_of_their_slab() {
 
 #[test]
 fn a_straight_wall_is_of_equal_square_boards() {
-    // A hyperbolic paraboloid of small twist: planks nearly the rectangle of the ruling by nothing; here a cylinder's lines are
-    // given an axis.
+    // All rulings are parallel, so that the axis must be given.
     let wall = straight(6, [DVec3::ZERO, 4.0 * DVec3::X], [3.0 * DVec3::Z, 4.0 * DVec3::X + 3.0 * DVec3::Z]);
     let options = PlankOptions { axis: Some(-7.0 * DVec3::Z), depth: 0.1, ..PlankOptions::new(0.5) };
     let found = planks(&wall, &options).unwrap();

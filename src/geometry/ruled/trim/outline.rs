@@ -31,6 +31,9 @@ struct Projection<'a, F> {
     tolerance: f64,
 }
 
+/// Parameters this near to an end of their range, over the range, are on it.
+const ON_SIDE: f64 = 1e-12;
+
 /// Corners are dropped within this part of the tolerance,
 const SIMPLER: f64 = 0.1;
 
@@ -46,7 +49,14 @@ struct Located {
 
 impl<F: Fn(DVec3) -> [f64; 2]> Projection<'_, F> {
     fn located(&self, point: DVec3) -> Located {
-        Located { point, at: (self.locate)(point) }
+        let [u, v] = (self.locate)(point);
+        // Newton's method comes to a side of the rectangle up to rounding.
+        let put = |at: f64, last: f64| match at / last {
+            part if part < ON_SIDE => 0.0,
+            part if part > 1.0 - ON_SIDE => last,
+            _ => at,
+        };
+        Located { point, at: [put(u, self.strip.length_u()), put(v, 1.0)] }
     }
 
     /// A loop as closed polygons: one, but of a closed strip a polygon for each part between two crossings of the seam.
@@ -57,7 +67,7 @@ impl<F: Fn(DVec3) -> [f64; 2]> Projection<'_, F> {
             let (next, mut budget) = (corners[(i + 1) % corners.len()], MOST_PIECES);
             self.extend(corner, next, MOST_HALVINGS, &mut budget, &mut curve);
         }
-        let curve = self.simplified(curve);
+        let curve = self.simplified(self.without_runs(curve));
         if self.strip.basis().is_closed() { at_seam(&curve, self.strip.length_u()) } else { vec![curve] }
     }
 
@@ -94,6 +104,21 @@ impl<F: Fn(DVec3) -> [f64; 2]> Projection<'_, F> {
         let on = |axis: usize, end: f64| all.iter().all(|at| at[axis] == end);
         let is_at_end = !self.strip.basis().is_closed() && (on(0, 0.0) || on(0, self.strip.length_u()));
         is_at_end || on(1, 0.0) || on(1, 1.0)
+    }
+
+    /// Without what lies between the first and the last of corners that follow each other on one side of the rectangle: how a curve
+    /// runs there does not matter, and overlapping edges by the thousand are slow to clip.
+    fn without_runs(&self, curve: Contour) -> Contour {
+        let mut kept = Contour::with_capacity(curve.len());
+        for at in curve {
+            if let [.., before, last] = kept[..]
+                && self.are_on_one_side([before, last, at])
+            {
+                kept.pop();
+            }
+            kept.push(at);
+        }
+        kept
     }
 
     /// Without the corners that a straight line from one corner to a later one passes within a part of the tolerance: the points of
