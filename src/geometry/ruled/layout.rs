@@ -50,8 +50,7 @@ impl Layout {
             joints.pairs.iter().for_each(|&[first, second]| before[second] = Some(first));
         }
         let (mut offsets, mut point_count) = (vec![[0; 2]; strips.len()], 0);
-        // First boundaries after second ones where they are one; so all second ones come first where a strip has a predecessor.
-        // Points of a strip should be near each other in number for a narrow band: both sides of a strip in turn.
+        // A first boundary that is the second one of another strip takes its points from there.
         for (i, strip) in strips.iter().enumerate() {
             for side in [0, 1] {
                 if side == 1 || before[i].is_none() {

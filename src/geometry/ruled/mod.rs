@@ -11,6 +11,8 @@
 //! curve of the family chosen: a [`Field`]. Strip boundaries are level sets of a function `f` on `Ψ`, across the asymptotic curves;
 //! `∇f` points the way that `a` does. A strip has control points `b_i0` on its first boundary, `b_i1` on its second, and is the
 //! B-spline surface `S(u, v) = (1 − v) Σ N_i(u) b_i0 + v Σ N_i(u) b_i1` of degree 3 along its boundaries and 1 along its rulings.
+//! Strips [start] between boundaries with rulings along asymptotic curves, and are [optimised](optimise) under [conditions]; a
+//! [single] strip between two curves is the least that there is.
 
 pub mod asymptotic;
 pub mod boundaries;
