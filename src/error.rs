@@ -56,6 +56,16 @@ pub enum Status {
     Singular = 33,
     /// A ring does not close.
     NotClosed = 34,
+    /// The mesh is no oriented surface: an edge has more than two faces, or faces disagree about what is up.
+    NotManifold = 35,
+    /// The surface is not negatively curved where it must be: it has no asymptotic directions there.
+    CurvatureSign = 36,
+    /// No consistent choice of directions exists over the whole surface.
+    NotOrientable = 37,
+    /// Side conditions contradict each other.
+    Infeasible = 38,
+    /// What is asked for lies outside the surface, or outside the values of a function.
+    OutOfDomain = 39,
 }
 
 impl Status {
@@ -83,6 +93,11 @@ impl Status {
         Self::NoSolution,
         Self::Singular,
         Self::NotClosed,
+        Self::NotManifold,
+        Self::CurvatureSign,
+        Self::NotOrientable,
+        Self::Infeasible,
+        Self::OutOfDomain,
     ];
 
     /// One line for people, without the details that only an [`Error`] knows.
@@ -110,6 +125,11 @@ impl Status {
             Self::NoSolution => "no solution exists",
             Self::Singular => "the edges that must meet are parallel",
             Self::NotClosed => "the ring does not close",
+            Self::NotManifold => "the mesh is no oriented surface",
+            Self::CurvatureSign => "the surface is not negatively curved",
+            Self::NotOrientable => "no consistent choice of directions exists",
+            Self::Infeasible => "side conditions contradict each other",
+            Self::OutOfDomain => "what is asked for lies outside",
         }
     }
 }

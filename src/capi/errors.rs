@@ -62,6 +62,16 @@ pub enum shapeop_err {
     SO_SINGULAR = 33,
     /// A ring does not close.
     SO_NOT_CLOSED = 34,
+    /// The mesh is no oriented surface: an edge has more than two faces, or faces disagree about what is up.
+    SO_NOT_MANIFOLD = 35,
+    /// The surface is not negatively curved where it must be.
+    SO_CURVATURE_SIGN = 36,
+    /// No consistent choice of directions exists over the whole surface.
+    SO_NOT_ORIENTABLE = 37,
+    /// Side conditions contradict each other.
+    SO_INFEASIBLE = 38,
+    /// What is asked for lies outside the surface, or outside the values of a function.
+    SO_OUT_OF_DOMAIN = 39,
 }
 
 impl From<Status> for shapeop_err {
@@ -89,6 +99,11 @@ impl From<Status> for shapeop_err {
             Status::NoSolution => Self::SO_NO_SOLUTION,
             Status::Singular => Self::SO_SINGULAR,
             Status::NotClosed => Self::SO_NOT_CLOSED,
+            Status::NotManifold => Self::SO_NOT_MANIFOLD,
+            Status::CurvatureSign => Self::SO_CURVATURE_SIGN,
+            Status::NotOrientable => Self::SO_NOT_ORIENTABLE,
+            Status::Infeasible => Self::SO_INFEASIBLE,
+            Status::OutOfDomain => Self::SO_OUT_OF_DOMAIN,
         }
     }
 }

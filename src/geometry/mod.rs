@@ -4,3 +4,4 @@ pub mod canal;
 pub mod circle;
 #[cfg(test)]
 mod random;
+pub mod ruled;

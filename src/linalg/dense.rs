@@ -51,6 +51,12 @@ impl Svd {
         (self.rank(tolerance)..self.v.ncols()).map(vector).collect()
     }
 
+    /// The unit vector that the matrix makes least of: the last right singular vector, which the sign is not determined of.
+    pub fn least_vector(&self) -> Vec<f64> {
+        let last = self.v.ncols().saturating_sub(1);
+        (0..self.v.nrows()).map(|i| self.v[(i, last)]).collect()
+    }
+
     /// Of all `x` for which `‖A x − b‖` is least, the shortest.
     pub fn least_norm(&self, b: &[f64], tolerance: f64) -> Vec<f64> {
         let mut x = vec![0.0; self.v.nrows()];
@@ -85,6 +91,8 @@ mod tests {
         for vector in &basis {
             assert!(vector.iter().zip(&x).map(|(v, x)| v * x).sum::<f64>().abs() < 1e-13);
         }
+        assert!(times(&svd.least_vector()).iter().all(|value| value.abs() < 1e-14));
+        assert!((svd.least_vector().iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-14);
         assert!(Svd::new(1, &[vec![f64::NAN]]).is_none());
     }
 }

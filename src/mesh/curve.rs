@@ -1,9 +1,14 @@
-//! Curves in space: cubic splines through given points, curves given as functions, points spread over them, and the nearest
+//! Curves in space: cubic splines through given points or with given control points, curves given as functions, points spread over them, and the nearest
 //! point of a curve.
 
+mod bspline;
+mod least_squares;
 mod nearest;
 mod resample;
 
+pub use bspline::{BSpline, CubicBasis, LocalBasis};
+pub(crate) use least_squares::fit;
+pub use least_squares::{Polyline, fit_polyline};
 pub use nearest::{End, Foot, NearestOnCurve};
 pub use resample::{ArcLength, Spacing, resample};
 

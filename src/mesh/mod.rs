@@ -4,23 +4,32 @@
 //! point `i` of the [`Mesh`], of a problem made from it, and of the file written back.
 
 mod closest;
+pub mod curvature;
 pub mod curve;
 pub mod file;
 pub mod fit;
 pub mod grid;
+pub mod level_curves;
 pub mod measure;
 mod obj;
 mod off;
+pub mod operators;
 pub mod patterns;
 mod ply;
 mod polylines;
+pub mod reference;
+pub mod surfaces;
 mod topology;
+pub mod triangles;
+pub mod walk;
 
 pub use closest::ClosestPoints;
 pub use file::Format;
 pub use grid::Grid;
 pub use polylines::polylines;
+pub use reference::ReferenceSurface;
 pub use topology::{BoundaryChain, Neighbours, Topology};
+pub use triangles::{SurfacePoint, TriangleMesh};
 
 use glam::DVec3;
 

@@ -32,8 +32,31 @@ pub fn height_field(
     y: [f64; 2],
     height: impl Fn(f64, f64) -> f64,
 ) -> Result<Mesh> {
+    parametric([columns, rows], [("x", x), ("y", y)], |x, y| DVec3::new(x, y, height(x, y)))
+}
+
+/// The surface `point(u, v)` over the rectangle of parameters from `u[0]` to `u[1]` and from `v[0]` to `v[1]`: as
+/// [`height_field`], which is the surface `(x, y, height(x, y))`. Columns go along `u`.
+///
+/// # Errors
+/// As [`height_field`].
+pub fn parametric_surface(
+    columns: usize,
+    rows: usize,
+    u: [f64; 2],
+    v: [f64; 2],
+    point: impl Fn(f64, f64) -> DVec3,
+) -> Result<Mesh> {
+    parametric([columns, rows], [("u", u), ("v", v)], point)
+}
+
+fn parametric(
+    [columns, rows]: [usize; 2],
+    ranges: [(&str, [f64; 2]); 2],
+    point: impl Fn(f64, f64) -> DVec3,
+) -> Result<Mesh> {
     check_counts(columns, rows, 2)?;
-    for (ends, name) in [(x, "x"), (y, "y")] {
+    for (name, ends) in ranges {
         finite(name, ends[0])?;
         finite(name, ends[1])?;
         if ends[1] <= ends[0] {
@@ -46,10 +69,8 @@ pub fn height_field(
         let last = (count - 1) as f64;
         ends[0] * ((count - 1 - i) as f64 / last) + ends[1] * (i as f64 / last)
     };
-    let point = |i: usize| {
-        let (x, y) = (at(x, i % columns, columns), at(y, i / columns, rows));
-        DVec3::new(x, y, height(x, y))
-    };
+    let [(_, u), (_, v)] = ranges;
+    let point = |i: usize| point(at(u, i % columns, columns), at(v, i / columns, rows));
     let corners = (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| row * columns + column));
     let quad = |i: usize| [i, i + 1, i + columns + 1, i + columns].map(|corner| corner as u32).to_vec();
     let mesh = Mesh { points: (0..columns * rows).map(point).collect(), faces: corners.map(quad).collect() };

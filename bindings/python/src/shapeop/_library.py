@@ -40,6 +40,11 @@ class ErrorCode(IntEnum):
     NO_SOLUTION = _abi.SO_NO_SOLUTION
     SINGULAR = _abi.SO_SINGULAR
     NOT_CLOSED = _abi.SO_NOT_CLOSED
+    NOT_MANIFOLD = _abi.SO_NOT_MANIFOLD
+    CURVATURE_SIGN = _abi.SO_CURVATURE_SIGN
+    NOT_ORIENTABLE = _abi.SO_NOT_ORIENTABLE
+    INFEASIBLE = _abi.SO_INFEASIBLE
+    OUT_OF_DOMAIN = _abi.SO_OUT_OF_DOMAIN
 
 
 class Error(Exception):
@@ -118,6 +123,11 @@ _CLASSES: dict[int, type[Error]] = {
     ErrorCode.NO_SOLUTION: GeometryError,
     ErrorCode.SINGULAR: GeometryError,
     ErrorCode.NOT_CLOSED: GeometryError,
+    ErrorCode.NOT_MANIFOLD: GeometryError,
+    ErrorCode.CURVATURE_SIGN: GeometryError,
+    ErrorCode.NOT_ORIENTABLE: GeometryError,
+    ErrorCode.INFEASIBLE: GeometryError,
+    ErrorCode.OUT_OF_DOMAIN: GeometryError,
 }
 
 

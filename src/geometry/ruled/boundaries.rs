@@ -1,0 +1,410 @@
+//! Strip boundaries as level curves, or as drawn.
+
+use glam::DVec3;
+
+use super::Field;
+use super::boundary::{Boundary, Rim};
+use super::walk::walk;
+use crate::error::{Error, Result, Status, finite};
+use crate::mesh::grid::check_finite;
+use crate::mesh::level_curves::{LevelCurve, level_curves};
+use crate::mesh::operators::gradient_on;
+use crate::mesh::reference::ReferenceMesh;
+use crate::mesh::{SurfacePoint, TriangleMesh};
+
+/// Boundaries at most.
+const MOST_LEVELS: usize = 100_000;
+
+/// From so many places along a curve it is looked which curve of the next level the field leads to.
+const PROBES: usize = 5;
+
+/// Which levels are boundaries.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Levels {
+    /// So many, evenly spaced between the least and the greatest value, half a spacing from each.
+    Count(usize),
+    /// These, ascending.
+    Values(Vec<f64>),
+    /// As many as fit at this distance, in model units where the gradient is 1 long, centred between the least and the greatest
+    /// value.
+    Width(f64),
+}
+
+impl Levels {
+    /// The levels between a least and a greatest value, and the distance between two of them (0 for a single given value).
+    pub(super) fn between(&self, [low, high]: [f64; 2]) -> Result<(Vec<f64>, f64)> {
+        let count_checked = |count: usize| match count {
+            1..=MOST_LEVELS => Ok(count),
+            _ => {
+                let reason = format!("expected 1 to {MOST_LEVELS} levels, found {count}");
+                Err(Error::new(Status::InvalidArgumentLength, reason).at("levels"))
+            }
+        };
+        match self {
+            Self::Count(count) => {
+                let spacing = (high - low) / count_checked(*count)? as f64;
+                Ok(((0..*count).map(|k| low + (k as f64 + 0.5) * spacing).collect(), spacing))
+            }
+            Self::Width(width) => {
+                if !(*width > 0.0 && finite("levels", *width).is_ok()) {
+                    let reason = format!("expected a width above 0, found {width}");
+                    return Err(Error::new(Status::InvalidValue, reason).at("levels"));
+                }
+                let count = count_checked(((high - low) / width).round().clamp(1.0, 1e9) as usize)?;
+                let first = 0.5 * (low + high) - 0.5 * (count - 1) as f64 * width;
+                Ok(((0..count).map(|k| first + k as f64 * width).collect(), *width))
+            }
+            Self::Values(values) => {
+                count_checked(values.len())?;
+                for (k, &value) in values.iter().enumerate() {
+                    let place = format!("levels[{k}]");
+                    finite(&place, value)?;
+                    if k > 0 && value <= values[k - 1] {
+                        let reason = format!("expected levels that ascend, found {value} after {}", values[k - 1]);
+                        return Err(Error::new(Status::InvalidValue, reason).at(place));
+                    }
+                    if !(value > low && value <= high) {
+                        let reason = format!("expected a level above {low} and up to {high}, found {value}");
+                        return Err(Error::new(Status::OutOfDomain, reason).at(place));
+                    }
+                }
+                let spacing = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+                Ok((values.clone(), if spacing.is_finite() { spacing } else { 0.0 }))
+            }
+        }
+    }
+}
+
+/// What is done to boundaries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundaryOptions {
+    /// Whether open ends are extended beyond the surface, so that strips cover it up to the rim.
+    pub extends: bool,
+    /// Whether there is a boundary beyond the surface before the first and after the last.
+    pub overshoots: bool,
+    /// Curves shorter than so many strip widths, 0 or more, are dropped, unless that leaves none.
+    pub least_length: f64,
+}
+
+impl Default for BoundaryOptions {
+    fn default() -> Self {
+        Self { extends: true, overshoots: true, least_length: 2.0 }
+    }
+}
+
+impl BoundaryOptions {
+    pub(super) fn check(&self) -> Result<()> {
+        if self.least_length >= 0.0 && self.least_length.is_finite() {
+            return Ok(());
+        }
+        let reason = format!("expected a finite number of 0 or more, found {}", self.least_length);
+        Err(Error::new(Status::InvalidValue, reason).at("options.least_length"))
+    }
+}
+
+/// A curve that was left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dropped {
+    /// Its level, or the number of its plane.
+    pub level: f64,
+    /// How many points it has,
+    pub point_count: usize,
+    /// and how long it is.
+    pub length: f64,
+}
+
+/// Strip boundaries.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Boundaries {
+    /// The boundaries, along the field; where levels consist of several curves, those that follow each other stand together.
+    pub boundaries: Vec<Boundary>,
+    /// The strips, each as the numbers of its two boundaries.
+    pub strips: Vec<[usize; 2]>,
+    /// Curves too short to be boundaries.
+    pub dropped: Vec<Dropped>,
+    /// Levels between which and the next one curves split, join or end, so that no strip is there.
+    pub unmatched: Vec<f64>,
+}
+
+impl Boundaries {
+    /// Refuses boundaries between which strips are missing.
+    ///
+    /// # Errors
+    /// Status `NoSolution`: between two levels curves split or join. The reason names the level.
+    pub fn check(&self) -> Result<()> {
+        match self.unmatched.first() {
+            None => Ok(()),
+            Some(level) => {
+                let reason = format!("curves split or join between level {level} and the next: no strip fits between");
+                Err(Error::new(Status::NoSolution, reason).at("levels"))
+            }
+        }
+    }
+}
+
+/// The level curves of a function with these values at the points as strip boundaries.
+///
+/// Curves of fewer than 3 points or too short are dropped, and listed. If several curves have a level, each is followed by that of
+/// the next level to which the field leads, if each of both has one such; otherwise the level is listed as unmatched.
+///
+/// # Errors
+/// Not one value for each point or one that is not finite (`values`, `values[i]`); a field of another mesh (`field`); levels or options out of range (`levels`,
+/// `levels[k]`, `options.least_length`). Status `OutOfDomain`: a level beyond the values, or whose curves are points (`levels[k]`),
+/// or no curve is long enough (`levels`).
+pub fn level_boundaries(
+    mesh: &TriangleMesh,
+    field: &Field,
+    values: &[f64],
+    levels: &Levels,
+    options: &BoundaryOptions,
+) -> Result<Boundaries> {
+    options.check()?;
+    field.check(mesh)?;
+    level_curves(mesh, values, 0.0)?;
+    let range = [
+        values.iter().copied().fold(f64::INFINITY, f64::min),
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    ];
+    let (levels, spacing) = levels.between(range)?;
+    let rim = Rim::new(mesh, field);
+    let mut found: Vec<Vec<(Boundary, f64)>> = Vec::new();
+    for (k, &level) in levels.iter().enumerate() {
+        let curves = level_curves(mesh, values, level)?;
+        if curves.iter().all(|curve| curve.length() == 0.0) {
+            let reason = format!("expected a level with curves, found {level}");
+            return Err(Error::new(Status::OutOfDomain, reason).at(format!("levels[{k}]")));
+        }
+        let width = |curve: &LevelCurve| {
+            let slopes = curve.points.iter().map(|p| gradient_on(mesh, values, p.at.triangle as usize).length());
+            spacing * curve.points.len() as f64 / slopes.sum::<f64>().max(f64::MIN_POSITIVE)
+        };
+        let with_least = |curve: LevelCurve| {
+            let least = options.least_length * width(&curve);
+            (of_curve(curve, level, rim.mean_edge()), least)
+        };
+        found.push(curves.into_iter().map(with_least).collect());
+    }
+    let (groups, dropped) = sorted_out(found);
+    if groups.is_empty() {
+        let reason = "expected a level with a curve of 3 points, found none";
+        return Err(Error::new(Status::OutOfDomain, reason).at("levels"));
+    }
+    let value = |at: SurfacePoint| {
+        let corners = mesh.triangles()[at.triangle as usize];
+        (0..3).map(|k| at.weights[k] * values[corners[k] as usize]).sum::<f64>()
+    };
+    let matched = matched(mesh, field, &groups, &value);
+    Ok(Boundaries { dropped, ..chained(&rim, groups, &matched, options) })
+}
+
+/// The curves of each level that has any, without those of fewer than 3 points or below the length that stands beside each, and what
+/// was dropped. If all are that short, as where few levels are asked for, length does not count.
+fn sorted_out(found: Vec<Vec<(Boundary, f64)>>) -> (Vec<Vec<Boundary>>, Vec<Dropped>) {
+    let is_long = |(boundary, least): &(Boundary, f64)| boundary.points.len() >= 3 && boundary.length() >= *least;
+    let is_any_long = found.iter().flatten().any(is_long);
+    let (mut groups, mut dropped) = (Vec::new(), Vec::new());
+    for curves in found {
+        let is_kept = |curve: &(Boundary, f64)| is_long(curve) || (!is_any_long && curve.0.points.len() >= 3);
+        let (kept, short): (Vec<_>, Vec<_>) = curves.into_iter().partition(is_kept);
+        let drop =
+            |(b, _): &(Boundary, f64)| Dropped { level: b.level, point_count: b.points.len(), length: b.length() };
+        dropped.extend(short.iter().map(drop));
+        groups.extend((!kept.is_empty()).then(|| kept.into_iter().map(|(boundary, _)| boundary).collect()));
+    }
+    (groups, dropped)
+}
+
+/// The points of a level curve, without those that are hardly apart.
+pub(super) fn of_curve(curve: LevelCurve, level: f64, mean_edge: f64) -> Boundary {
+    let (points, at) = curve.points.iter().map(|point| (point.position, Some(point.at))).unzip();
+    let mut boundary = Boundary { points, on_surface: at, is_closed: curve.is_closed, level };
+    boundary.merge(mean_edge);
+    boundary
+}
+
+/// The longest of some curves, the first of several; the others are added to those dropped. None without one of two points.
+pub(super) fn longest(
+    curves: Vec<LevelCurve>,
+    number: usize,
+    mean_edge: f64,
+    dropped: &mut Vec<Dropped>,
+) -> Option<Boundary> {
+    let mut boundaries: Vec<Boundary> =
+        curves.into_iter().map(|curve| of_curve(curve, number as f64, mean_edge)).collect();
+    let length = |i: &usize| boundaries[*i].length();
+    let longest = (0..boundaries.len()).rev().max_by(|a, b| length(a).total_cmp(&length(b)));
+    let found = boundaries.remove(longest.filter(|&i| boundaries[i].points.len() > 1)?);
+    let drop = |b: &Boundary| Dropped { level: b.level, point_count: b.points.len(), length: b.length() };
+    dropped.extend(boundaries.iter().map(drop));
+    Some(found)
+}
+
+/// Boundaries given along the field or against it, along it; otherwise the number (`level`) of the first that is out of order.
+pub(super) fn ordered(rim: &Rim<'_>, mut chain: Vec<Boundary>) -> std::result::Result<Vec<Boundary>, usize> {
+    let is_against = chain.len() > 1 && !rim.is_ahead(&chain[1], &chain[0]);
+    if is_against {
+        chain.reverse();
+    }
+    match (1..chain.len()).find(|&i| !rim.is_ahead(&chain[i], &chain[i - 1])) {
+        Some(i) => Err(chain[if is_against { i - 1 } else { i }].level as usize),
+        None => Ok(chain),
+    }
+}
+
+/// What follows a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Next {
+    /// This one of the next group.
+    Curve(usize),
+    /// The rim of the surface.
+    Rim,
+    /// A curve that other ones lead to as well.
+    Shared,
+}
+
+/// For each curve of each group what follows it.
+fn matched(
+    mesh: &TriangleMesh,
+    field: &Field,
+    groups: &[Vec<Boundary>],
+    value: &dyn Fn(SurfacePoint) -> f64,
+) -> Vec<Vec<Next>> {
+    let mut matched = Vec::new();
+    for pair in groups.windows(2) {
+        let (own, others) = (&pair[0], &pair[1]);
+        if own.len() == 1 && others.len() == 1 {
+            matched.push(vec![Next::Curve(0)]);
+            continue;
+        }
+        let mut is_hit = vec![vec![false; others.len()]; own.len()];
+        for (curve, hits) in own.iter().zip(&mut is_hit) {
+            for probe in 0..PROBES {
+                let place = (probe * 2 + 1) * curve.points.len() / (2 * PROBES);
+                let Some(Some(from)) = curve.on_surface.get(place) else { continue };
+                let walked = walk(mesh, field, *from, 1.0, &mut |at| value(at) >= others[0].level);
+                if !walked.is_out {
+                    hits[nearest(others, mesh.position(walked.end))] = true;
+                }
+            }
+        }
+        let next = |i: usize| {
+            let hits: Vec<usize> = (0..others.len()).filter(|&j| is_hit[i][j]).collect();
+            match hits[..] {
+                [] => Next::Rim,
+                [j] if (0..own.len()).all(|other| other == i || !is_hit[other][j]) => Next::Curve(j),
+                _ => Next::Shared,
+            }
+        };
+        matched.push((0..own.len()).map(next).collect());
+    }
+    matched.extend(groups.last().map(|group| vec![Next::Rim; group.len()]));
+    matched
+}
+
+fn nearest(curves: &[Boundary], point: DVec3) -> usize {
+    let distance =
+        |curve: &Boundary| curve.points.iter().map(|p| p.distance_squared(point)).fold(f64::INFINITY, f64::min);
+    (0..curves.len()).min_by(|&a, &b| distance(&curves[a]).total_cmp(&distance(&curves[b]))).unwrap_or(0)
+}
+
+/// Puts curves that follow each other into chains, and completes each.
+fn chained(rim: &Rim<'_>, groups: Vec<Vec<Boundary>>, matched: &[Vec<Next>], options: &BoundaryOptions) -> Boundaries {
+    let mut has_before: Vec<Vec<bool>> = groups.iter().map(|group| vec![false; group.len()]).collect();
+    let mut is_shared = has_before.clone();
+    let mut found = Boundaries::default();
+    for (k, nexts) in matched.iter().enumerate() {
+        for next in nexts {
+            match next {
+                Next::Curve(j) => has_before[k + 1][*j] = true,
+                Next::Shared => is_shared[k + 1].iter_mut().for_each(|is_shared| *is_shared = true),
+                Next::Rim => {}
+            }
+        }
+        if nexts.contains(&Next::Shared) {
+            found.unmatched.push(groups[k][0].level);
+        }
+    }
+    for first in 0..groups.len() {
+        for i in (0..groups[first].len()).filter(|&i| !has_before[first][i]) {
+            let (mut chain, mut at) = (Vec::new(), (first, i));
+            let end = loop {
+                chain.push(groups[at.0][at.1].clone());
+                match matched[at.0][at.1] {
+                    Next::Curve(j) => at = (at.0 + 1, j),
+                    end => break end,
+                }
+            };
+            let overshoots = [!is_shared[first][i], end == Next::Rim].map(|is_end| is_end && options.overshoots);
+            let start = found.boundaries.len();
+            found.boundaries.extend(rim.complete(chain, false, options.extends, overshoots));
+            found.strips.extend((start + 1..found.boundaries.len()).map(|k| [k - 1, k]));
+        }
+    }
+    found
+}
+
+/// Curves drawn by hand as strip boundaries, in the order along the field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawn {
+    /// The points, near the surface.
+    pub points: Vec<DVec3>,
+    /// Whether the last point is followed by the first.
+    pub is_closed: bool,
+}
+
+/// Strip boundaries along curves that were drawn: their points are moved to the nearest of the surface, and they are turned around
+/// if need be, so that the field leads to their left. Those that end on the rim are extended; there is no other beyond the surface,
+/// since where a curve ends was decided by who drew it.
+///
+/// # Errors
+/// No curve (`curves`); a field of another mesh (`field`); fewer than 2 points, or 3 of a closed one, points that are not finite, coincide with the one before, or
+/// whose nearest ones do (`curves[k]`, `curves[k].points[i]`). Status `Infeasible`: the field is not known along a curve or crosses
+/// it from both sides (`curves[k]`), or a curve is behind the one before it (`curves[k]`).
+pub fn drawn_boundaries(
+    surface: &ReferenceMesh<'_>,
+    field: &Field,
+    curves: &[Drawn],
+    options: &BoundaryOptions,
+) -> Result<Boundaries> {
+    options.check()?;
+    if curves.is_empty() {
+        return Err(Error::new(Status::InvalidArgumentLength, "expected at least 1, found none").at("curves"));
+    }
+    let mesh = surface.mesh();
+    field.check(mesh)?;
+    let rim = Rim::new(mesh, field);
+    let mut chain: Vec<Boundary> = Vec::with_capacity(curves.len());
+    for (k, curve) in curves.iter().enumerate() {
+        let boundary = drawn(surface, &rim, curve, k).map_err(|error| error.at(format!("curves[{k}]")))?;
+        if chain.last().is_some_and(|last| !rim.is_ahead(&boundary, last)) {
+            let reason = "expected a curve ahead of the one before, along the field";
+            return Err(Error::new(Status::Infeasible, reason).at(format!("curves[{k}]")));
+        }
+        chain.push(boundary);
+    }
+    let boundaries = rim.complete(chain, false, options.extends, [false; 2]);
+    let strips = (1..boundaries.len()).map(|k| [k - 1, k]).collect();
+    Ok(Boundaries { boundaries, strips, ..Boundaries::default() })
+}
+
+fn drawn(surface: &ReferenceMesh<'_>, rim: &Rim<'_>, curve: &Drawn, k: usize) -> Result<Boundary> {
+    let (count, least) = (curve.points.len(), if curve.is_closed { 3 } else { 2 });
+    if count < least {
+        let reason = format!("expected at least {least} points, found {count}");
+        return Err(Error::new(Status::InvalidArgumentLength, reason).at("points"));
+    }
+    check_finite("points", &curve.points)?;
+    let on_surface: Vec<SurfacePoint> = curve.points.iter().map(|&point| surface.locate(point)).collect();
+    let points: Vec<DVec3> = on_surface.iter().map(|&at| surface.mesh().position(at)).collect();
+    if let Some(i) = (1..count).find(|&i| points[i] == points[i - 1]) {
+        let reason = "expected a point apart from the one before, also on the surface";
+        return Err(Error::new(Status::Degenerate, reason).at(format!("points[{i}]")));
+    }
+    let on_surface = on_surface.into_iter().map(Some).collect();
+    let mut boundary = Boundary { points, on_surface, is_closed: curve.is_closed, level: k as f64 };
+    if !rim.turn(&mut boundary).is_some_and(|least| least > 0.0) {
+        let reason = "expected a curve that the field crosses from one side";
+        return Err(Error::new(Status::Infeasible, reason));
+    }
+    Ok(boundary)
+}

@@ -1,0 +1,357 @@
+//! From a mesh to ruled strips, step by step: directions, boundaries, strips to start from, strips that are optimal.
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+
+use super::asymptotic::{self, AsymptoticDirections};
+use super::boundaries::{Boundaries, BoundaryOptions, Drawn, Levels, drawn_boundaries, level_boundaries};
+use super::conditions::Condition;
+use super::level_function::{LevelFunction, LevelOptions, level_function};
+use super::optimise::{self, Optimised, Task, optimise};
+use super::periods::{Spacing, periodic_boundaries};
+use super::planar_boundaries::{PlanarOptions, Plane, planar_boundaries};
+use super::report::{Report, ReportOptions, report};
+use super::ruling_ends::RulingEnds;
+use super::start::{Rulings, Start, StartOptions, start};
+use super::terms::points_to_cover;
+use super::{Boundary, Field, Joints, Strip, orientation, planks};
+use crate::error::{Error, Result, Status};
+use crate::linalg::gauss_newton;
+use crate::mesh::reference::ReferenceMesh;
+use crate::mesh::{Mesh, ReferenceSurface, TriangleMesh};
+
+/// Points of the mesh that strips are asked to cover: more do not change what is found, and each costs a search.
+const MOST_COVERED: usize = 5_000;
+
+/// How the asymptotic directions are found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FieldOptions {
+    /// Curvatures, and which points have no directions.
+    pub directions: asymptotic::Options,
+    /// Which of the two families rulings follow: 0 or 1, of negative or positive torsion.
+    pub family: usize,
+    /// The signs of the directions.
+    pub orientation: orientation::Options,
+}
+
+/// A mesh and the strips that are made of it. Each step needs those before it, and takes back those after it.
+#[derive(Clone, Debug)]
+pub struct Design {
+    mesh: TriangleMesh,
+    directions: AsymptoticDirections,
+    field: Field,
+    flips: Vec<[u32; 2]>,
+    function: Option<LevelFunction>,
+    boundaries: Boundaries,
+    /// The plane of each boundary, if they are plane sections.
+    planes: Vec<Option<Plane>>,
+    start: Option<Start>,
+    strips: Vec<Strip>,
+    joints: Joints,
+}
+
+impl Design {
+    /// The design of a mesh, with the directions of a family.
+    ///
+    /// # Errors
+    /// As [`TriangleMesh::new`], [`AsymptoticDirections::new`] and [`AsymptoticDirections::orient`].
+    pub fn new(mesh: &Mesh, options: &FieldOptions) -> Result<Self> {
+        let mesh = TriangleMesh::new(mesh)?;
+        let directions = AsymptoticDirections::new(&mesh, &options.directions)?;
+        let oriented = directions.orient(&mesh, options.family, &options.orientation)?;
+        Ok(Self {
+            mesh,
+            directions,
+            field: oriented.field,
+            flips: oriented.flips,
+            function: None,
+            boundaries: Boundaries::default(),
+            planes: Vec::new(),
+            start: None,
+            strips: Vec::new(),
+            joints: Joints::default(),
+        })
+    }
+
+    /// The triangles of the mesh.
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.mesh
+    }
+
+    /// Both families of directions.
+    pub fn directions(&self) -> &AsymptoticDirections {
+        &self.directions
+    }
+
+    /// The family that rulings follow.
+    pub fn field(&self) -> &Field {
+        &self.field
+    }
+
+    /// The edges across which the field changes its sign.
+    pub fn flips(&self) -> &[[u32; 2]] {
+        &self.flips
+    }
+
+    /// The function whose level curves the boundaries are; none if they are not level curves.
+    pub fn function(&self) -> Option<&LevelFunction> {
+        self.function.as_ref()
+    }
+
+    /// The boundaries, in the order along the field, and the strips between them.
+    pub fn boundaries(&self) -> &Boundaries {
+        &self.boundaries
+    }
+
+    /// The strips that the last step made.
+    pub fn strips(&self) -> &[Strip] {
+        &self.strips
+    }
+
+    /// Which strips are neighbours.
+    pub fn joints(&self) -> &Joints {
+        &self.joints
+    }
+
+    /// What was found when strips were started.
+    pub fn started(&self) -> Option<&Start> {
+        self.start.as_ref()
+    }
+
+    /// Takes level curves of a function as boundaries; on a surface with holes, of one that may jump by a multiple of the levels'
+    /// distance around each. The edges where the field flips are added to those of `function`.
+    ///
+    /// # Errors
+    /// As [`level_function`](fn@level_function) and [`level_boundaries`], or [`periodic_boundaries`] on a surface with holes, where levels cannot be
+    /// given by their values (`levels`).
+    pub fn set_level_boundaries(
+        &mut self,
+        function: &LevelOptions,
+        levels: &Levels,
+        options: &BoundaryOptions,
+        progress: &mut dyn FnMut(&gauss_newton::Progress) -> ControlFlow<()>,
+    ) -> Result<()> {
+        let mut function = function.clone();
+        function.flips.extend(&self.flips);
+        let (function, boundaries) = if self.mesh.boundary().len() > 1 {
+            let spacing = match levels {
+                Levels::Count(count) => Spacing::Count(*count),
+                Levels::Width(width) => Spacing::Width(*width),
+                Levels::Values(_) => {
+                    let reason = "expected a count or a width, as values mean nothing around a hole; found values";
+                    return Err(Error::new(Status::InvalidValue, reason).at("levels"));
+                }
+            };
+            let found = periodic_boundaries(&self.mesh, &self.field, &function, spacing, options, progress)?;
+            (found.function, found.boundaries)
+        } else {
+            let found = level_function(&self.mesh, &self.field, &function, progress)?;
+            let boundaries = level_boundaries(&self.mesh, &self.field, &found.values, levels, options)?;
+            (found, boundaries)
+        };
+        self.take(boundaries, Vec::new(), Some(function));
+        Ok(())
+    }
+
+    /// Takes plane sections as boundaries; gives the least angles at which they cross the field, for each plane.
+    ///
+    /// # Errors
+    /// As [`planar_boundaries`].
+    pub fn set_planar_boundaries(&mut self, planes: &[Plane], options: &PlanarOptions) -> Result<Vec<f64>> {
+        let found = planar_boundaries(&self.mesh, &self.field, planes, options)?;
+        self.take(found.boundaries, found.planes, None);
+        Ok(found.angles_rad)
+    }
+
+    /// Takes curves drawn by hand as boundaries.
+    ///
+    /// # Errors
+    /// As [`drawn_boundaries`].
+    pub fn set_drawn_boundaries(&mut self, curves: &[Drawn], options: &BoundaryOptions) -> Result<()> {
+        let boundaries = drawn_boundaries(&ReferenceMesh::new(&self.mesh), &self.field, curves, options)?;
+        self.take(boundaries, Vec::new(), None);
+        Ok(())
+    }
+
+    fn take(&mut self, boundaries: Boundaries, planes: Vec<Option<Plane>>, function: Option<LevelFunction>) {
+        self.boundaries = boundaries;
+        self.planes = planes;
+        self.function = function;
+        self.start = None;
+        self.strips.clear();
+        self.joints = Joints::default();
+    }
+
+    /// Makes strips between the boundaries, their rulings along asymptotic curves.
+    ///
+    /// # Errors
+    /// As [`start`](fn@start). Status `NoSolution`: there are no boundaries with strips between them (`boundaries`).
+    pub fn start(&mut self, options: StartOptions) -> Result<()> {
+        if self.boundaries.strips.is_empty() {
+            let reason = "expected boundaries with a strip between two of them at least, found none";
+            return Err(Error::new(Status::NoSolution, reason).at("boundaries"));
+        }
+        let reference = ReferenceMesh::new(&self.mesh);
+        let mut found = Start { strips: Vec::new(), missed: Vec::new(), moved: Vec::new() };
+        let mut joints = Joints { pairs: Vec::new(), is_shared: options.is_shared };
+        for chain in chains(&self.boundaries.strips) {
+            let along: Vec<&Boundary> = chain.iter().map(|&k| &self.boundaries.boundaries[k]).collect();
+            let ends = RulingEnds::new(&reference, &self.field, &along)?;
+            let points: Vec<Vec<DVec3>> = along.iter().map(|boundary| boundary.points.clone()).collect();
+            let is_closed: Vec<bool> = along.iter().map(|boundary| boundary.is_closed).collect();
+            let first = found.strips.len();
+            let traced = |strip: usize, point: DVec3| ends.end(strip, point);
+            let made = start(&points, &is_closed, Rulings::Traced(&traced), options)?;
+            let count = made.strips.len();
+            joints.pairs.extend((1..count).map(|i| [first + i - 1, first + i]));
+            if count > 1 && chain[0] == chain[count] {
+                joints.pairs.push([first + count - 1, first]);
+            }
+            found.strips.extend(made.strips);
+            found.missed.extend(made.missed);
+            found.moved.extend(made.moved);
+        }
+        self.strips.clone_from(&found.strips);
+        self.joints = joints;
+        self.start = Some(found);
+        Ok(())
+    }
+
+    /// The conditions that keep boundaries in the planes that they were cut by; none if they were not.
+    pub fn planar_conditions(&self) -> Vec<Condition> {
+        let sides = self.chained_sides();
+        let planes = sides.into_iter().filter_map(|(strip, side, boundary)| {
+            let Plane { normal, offset } = (*self.planes.get(boundary)?)?;
+            Some(Condition::PlanarBoundary { strip, side, normal, offset })
+        });
+        planes.collect()
+    }
+
+    /// The conditions that make each strip a conoid about the axis that its rulings have now, with the greatest angle in degrees
+    /// by which they are off it.
+    ///
+    /// # Errors
+    /// Status `Degenerate`: all rulings of a strip are parallel (`strips[i]`).
+    pub fn conoidal_conditions(&self) -> Result<(Vec<Condition>, f64)> {
+        let mut worst = 0.0_f64;
+        let mut conditions = Vec::with_capacity(self.strips.len());
+        for (strip, of) in self.strips.iter().enumerate() {
+            let axis = planks::axis(of).map_err(|error| error.with_place(format!("strips[{strip}]")))?;
+            worst = worst.max(axis.deviation_deg);
+            conditions.push(Condition::Conoidal { strip, axis: axis.direction });
+        }
+        Ok((conditions, worst))
+    }
+
+    /// For each strip both sides: the strip, the side, the boundary.
+    fn chained_sides(&self) -> Vec<(usize, usize, usize)> {
+        let chains = chains(&self.boundaries.strips);
+        let pairs = chains.iter().flat_map(|chain| chain.windows(2));
+        pairs.enumerate().flat_map(|(strip, pair)| [(strip, 0, pair[0]), (strip, 1, pair[1])]).collect()
+    }
+
+    /// Brings the strips as near as they come to the reference and to each other: to the mesh, or to `surface`, the surface that it
+    /// is a mesh of. What was found is returned; the strips of the design are those that it holds.
+    ///
+    /// # Errors
+    /// As [`optimise`](fn@optimise).
+    pub fn optimise(
+        &mut self,
+        surface: Option<&dyn ReferenceSurface>,
+        conditions: &[Condition],
+        options: &optimise::Options,
+        progress: &mut dyn FnMut(&optimise::Progress) -> ControlFlow<()>,
+    ) -> Result<Optimised> {
+        let mesh = ReferenceMesh::new(&self.mesh);
+        let reference = surface.unwrap_or(&mesh);
+        let cover = points_to_cover(&self.mesh, MOST_COVERED);
+        let task = Task { strips: &self.strips, joints: &self.joints, reference, cover: &cover, conditions };
+        let found = optimise(task, options, progress)?;
+        self.strips.clone_from(&found.strips);
+        Ok(found)
+    }
+
+    /// Judges the strips. Those that are neighbours are those of the design, whatever `options.joints` says.
+    ///
+    /// # Errors
+    /// As [`report`](fn@report).
+    pub fn report(&self, surface: Option<&dyn ReferenceSurface>, options: &ReportOptions) -> Result<Report> {
+        let mesh = ReferenceMesh::new(&self.mesh);
+        let options = ReportOptions { joints: Some(self.joints.pairs.clone()), ..options.clone() };
+        report(&self.strips, &mesh, surface.unwrap_or(&mesh), &options)
+    }
+}
+
+/// Boundaries that strips lead from one to the next; a ring has its first again at its end.
+fn chains(strips: &[[usize; 2]]) -> Vec<Vec<usize>> {
+    let mut chains: Vec<Vec<usize>> = Vec::new();
+    for &[from, to] in strips {
+        match chains.last_mut().filter(|chain| chain.last() == Some(&from)) {
+            Some(chain) => chain.push(to),
+            None => chains.push(vec![from, to]),
+        }
+    }
+    chains
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::patterns::parametric_surface;
+    use crate::mesh::surfaces;
+
+    fn quiet<P>(_: &P) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    #[test]
+    fn strips_follow_each_other() {
+        assert_eq!(chains(&[[0, 1], [1, 2], [3, 4]]), [vec![0, 1, 2], vec![3, 4]]);
+        assert_eq!(chains(&[[0, 1], [1, 2], [2, 0]]), [vec![0, 1, 2, 0]]);
+        assert!(chains(&[]).is_empty());
+    }
+
+    #[test]
+    fn a_saddle_becomes_strips_that_cover_it() {
+        let saddle = surfaces::saddle();
+        let mesh = parametric_surface(31, 31, [-1.0, 1.0], [-1.0, 1.0], |x, y| saddle(x, y).point).unwrap();
+        for family in [0, 1] {
+            let mut design = Design::new(&mesh, &FieldOptions { family, ..FieldOptions::default() }).unwrap();
+            let (levels, options) = (Levels::Count(4), BoundaryOptions::default());
+            design.set_level_boundaries(&LevelOptions::default(), &levels, &options, &mut quiet).unwrap();
+            assert!(design.start(StartOptions::default()).is_ok());
+            let found = design.optimise(None, &[], &optimise::Options::default(), &mut quiet).unwrap();
+            assert!(found.history.windows(2).all(|pair| pair[1].value < pair[0].value));
+            let report = design.report(None, &ReportOptions::default()).unwrap();
+            let diagonal = design.mesh().diagonal();
+            // Rulings are straight on a saddle: what is left is the mesh's chord error, a quarter of the squared edge.
+            assert!(report.coverage > 0.995 && report.coverage < 1.02, "{}", report.coverage);
+            assert!(
+                report.strips_to_reference.max < 1.2e-3 * diagonal,
+                "{}",
+                report.strips_to_reference.max / diagonal
+            );
+            assert!(
+                report.reference_to_strips.max < 1.2e-3 * diagonal,
+                "{}",
+                report.reference_to_strips.max / diagonal
+            );
+            assert!(report.max_gap < 1e-3 * diagonal, "{}", report.max_gap / diagonal);
+        }
+    }
+
+    #[test]
+    fn steps_out_of_order_and_spheres_are_refused() {
+        let sphere = surfaces::sphere(1.0);
+        let mesh = parametric_surface(12, 12, [0.0, 1.0], [-0.5, 0.5], |u, v| sphere(u, v).point).unwrap();
+        let refused = Design::new(&mesh, &FieldOptions::default()).unwrap_err();
+        assert_eq!(refused.status(), Status::CurvatureSign);
+        let saddle = surfaces::saddle();
+        let mesh = parametric_surface(12, 12, [-1.0, 1.0], [-1.0, 1.0], |x, y| saddle(x, y).point).unwrap();
+        let mut design = Design::new(&mesh, &FieldOptions::default()).unwrap();
+        assert_eq!(design.start(StartOptions::default()).unwrap_err().place(), "boundaries");
+        let refused = design.optimise(None, &[], &optimise::Options::default(), &mut quiet).unwrap_err();
+        assert_eq!(refused.place(), "strips");
+    }
+}
