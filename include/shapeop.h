@@ -209,6 +209,26 @@ typedef enum shapeop_err {
      * A ring does not close.
      */
     SO_NOT_CLOSED = 34,
+    /**
+     * The mesh is no oriented surface: an edge has more than two faces, or faces disagree about what is up.
+     */
+    SO_NOT_MANIFOLD = 35,
+    /**
+     * The surface is not negatively curved where it must be.
+     */
+    SO_CURVATURE_SIGN = 36,
+    /**
+     * No consistent choice of directions exists over the whole surface.
+     */
+    SO_NOT_ORIENTABLE = 37,
+    /**
+     * Side conditions contradict each other.
+     */
+    SO_INFEASIBLE = 38,
+    /**
+     * What is asked for lies outside the surface, or outside the values of a function.
+     */
+    SO_OUT_OF_DOMAIN = 39,
 } shapeop_err;
 #endif
 

@@ -55,6 +55,16 @@ namespace ShapeOp
         Singular = 33,
         /// <summary>A ring does not close.</summary>
         NotClosed = 34,
+        /// <summary>The mesh is no oriented surface: an edge has more than two faces, or faces disagree about what is up.</summary>
+        NotManifold = 35,
+        /// <summary>The surface is not negatively curved where it must be.</summary>
+        CurvatureSign = 36,
+        /// <summary>No consistent choice of directions exists over the whole surface.</summary>
+        NotOrientable = 37,
+        /// <summary>Side conditions contradict each other.</summary>
+        Infeasible = 38,
+        /// <summary>What is asked for lies outside the surface, or outside the values of a function.</summary>
+        OutOfDomain = 39,
     }
 
     /// <summary>How iterations are accelerated: see shapeop_setAcceleration.</summary>
