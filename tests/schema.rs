@@ -17,4 +17,6 @@ fn the_committed_schemas_are_current() {
     check(schemars::schema_for!(shapeop::geometry::canal::file::SurfaceForm), "canal.schema.json");
     check(schemars::schema_for!(shapeop::geometry::canal::file::PartsForm), "canal-parts.schema.json");
     check(schemars::schema_for!(shapeop::geometry::ruled::file::StripsForm), "ruled.schema.json");
+    check(schemars::schema_for!(shapeop::geometry::ruled::planks::Planks), "ruled-planks.schema.json");
+    check(schemars::schema_for!(shapeop::geometry::ruled::report::Report), "ruled-report.schema.json");
 }
