@@ -5,6 +5,7 @@ mod canal;
 mod engine;
 mod exploration;
 mod program;
+mod ruled;
 mod speed;
 
 use anyhow::{Context, Result, bail};
@@ -24,6 +25,8 @@ pub enum Area {
     Canal,
     /// Hard constraints: projections, exact planarity, IPOPT, the paper's figures, a large drag, contradictions, weights.
     Exploration,
+    /// Ruled free forms: strips of five surfaces, seconds per step for a large mesh.
+    Ruled,
 }
 
 /// Measures and prints; fails if a figure is short of its target.
@@ -35,6 +38,7 @@ pub fn run(area: Area, reuse: bool, repetitions: Option<usize>) -> Result<()> {
         Area::Exploration => exploration::show(&mut figures)?,
         Area::Canal => canal::show(&mut figures)?,
         Area::Bindings => bindings::show(&mut figures)?,
+        Area::Ruled => ruled::show(&mut figures)?,
     }
     println!();
     if figures.short.is_empty() {
