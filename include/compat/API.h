@@ -39,7 +39,12 @@ typedef enum shapeop_err {
     SO_NO_INTERSECTION = 31,
     SO_NO_SOLUTION = 32,
     SO_SINGULAR = 33,
-    SO_NOT_CLOSED = 34
+    SO_NOT_CLOSED = 34,
+    SO_NOT_MANIFOLD = 35,
+    SO_CURVATURE_SIGN = 36,
+    SO_NOT_ORIENTABLE = 37,
+    SO_INFEASIBLE = 38,
+    SO_OUT_OF_DOMAIN = 39
 } shapeop_err;
 
 #endif
