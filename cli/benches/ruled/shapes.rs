@@ -28,21 +28,6 @@ impl Shape {
     }
 }
 
-/// `z = x y + 0.1 (x³ − 3 x y²)`.
-pub fn free_form() -> impl Fn(f64, f64) -> SurfaceJet + Sync {
-    surfaces::graph(|x, y| {
-        let cubic = 0.1;
-        [
-            x * y + cubic * (x.powi(3) - 3.0 * x * y * y),
-            y + 3.0 * cubic * (x * x - y * y),
-            x - 6.0 * cubic * x * y,
-            6.0 * cubic * x,
-            1.0 - 6.0 * cubic * y,
-            -6.0 * cubic * x,
-        ]
-    })
-}
-
 /// Five surfaces of negative curvature.
 pub fn five() -> [Shape; 5] {
     [
@@ -50,6 +35,6 @@ pub fn five() -> [Shape; 5] {
         Shape::new("hyperboloid of one sheet", [[0.0, 1.6], [-0.8, 0.8]], surfaces::hyperboloid()),
         Shape::new("helicoid", [[0.3, 1.5], [0.0, 2.0]], surfaces::helicoid(0.8)),
         Shape::new("catenoid", [[0.0, 1.6], [-0.8, 0.8]], surfaces::catenoid()),
-        Shape::new("free form", [[-1.0, 1.0], [-0.8, 0.8]], free_form()),
+        Shape::new("free form", [[-1.0, 1.0], [-0.8, 0.8]], surfaces::bent_saddle(0.1)),
     ]
 }

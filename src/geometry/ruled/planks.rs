@@ -60,15 +60,11 @@ pub fn axis(strip: &Strip) -> Result<Axis> {
     let columns = [0, 1, 2].map(|k| directions.iter().map(|direction| direction[k]).collect());
     let svd = if directions.len() < 3 { None } else { Svd::new(directions.len(), &columns) };
     let svd = svd.ok_or_else(|| degenerate("expected at least 3 rulings with a length"))?;
-    let [first, second, third] = [0, 1, 2].map(|k| svd.singular_values()[k]);
+    let [first, second] = [0, 1].map(|k| svd.singular_values()[k]);
     if second <= PARALLEL * first {
         return Err(degenerate("expected rulings of several directions, which have one axis, found all parallel"));
     }
-    // Between the second singular value and the third, so that the third vector alone is left; of two equal ones any will do.
-    let between = (0.5 * (second + third) / first).min((1.0 - f64::EPSILON) * second / first);
-    let found = svd.null_space(between);
-    let last = &found[found.len() - 1];
-    let direction = upward(strip, DVec3::new(last[0], last[1], last[2]).normalize());
+    let direction = upward(strip, DVec3::from_slice(&svd.least_vector()).normalize());
     Ok(Axis { direction, deviation_deg: deviation_deg(strip, direction).0 })
 }
 

@@ -6,9 +6,9 @@ use super::*;
 use crate::error::Status;
 use crate::geometry::ruled::start::{Rulings, StartOptions, start};
 use crate::geometry::ruled::system::{flat, gradient};
-use crate::mesh::TriangleMesh;
 use crate::mesh::curve::{CubicBasis, End};
 use crate::mesh::reference::{ParametricSurface, ReferenceMesh, SurfaceJet};
+use crate::mesh::{TriangleMesh, surfaces};
 
 mod side_conditions;
 
@@ -22,15 +22,7 @@ fn saddle(cubic: f64, half: f64) -> ParametricSurface<impl Fn(f64, f64) -> Surfa
 }
 
 fn saddle_over(cubic: f64, halves: [f64; 2]) -> ParametricSurface<impl Fn(f64, f64) -> SurfaceJet + Sync> {
-    let jet = move |x: f64, y: f64| SurfaceJet {
-        point: DVec3::new(x, y, x * y + cubic * (x.powi(3) - 3.0 * x * y * y)),
-        first: [
-            DVec3::new(1.0, 0.0, y + cubic * (3.0 * x * x - 3.0 * y * y)),
-            DVec3::new(0.0, 1.0, x - 6.0 * cubic * x * y),
-        ],
-        second: [6.0 * cubic * x * DVec3::Z, (1.0 - 6.0 * cubic * y) * DVec3::Z, -6.0 * cubic * x * DVec3::Z],
-    };
-    ParametricSurface::new(halves.map(|half| [-half, half]), [41, 41], jet).unwrap()
+    ParametricSurface::new(halves.map(|half| [-half, half]), [41, 41], surfaces::bent_saddle(cubic)).unwrap()
 }
 
 /// Numbers between −1 and 1 that look random.

@@ -1,20 +1,15 @@
 use super::*;
 use crate::geometry::ruled::trim::tests::straight;
 use crate::mesh::patterns::height_field;
-use crate::mesh::reference::ParametricSurface;
-use crate::mesh::reference::SurfaceJet;
+use crate::mesh::reference::{ParametricSurface, SurfaceJet};
+use crate::mesh::surfaces;
 
 fn saddle_mesh(n: usize) -> TriangleMesh {
     TriangleMesh::new(&height_field(n, n, [-1.0, 1.0], [-1.0, 1.0], |x, y| x * y).unwrap()).unwrap()
 }
 
 fn saddle_surface() -> ParametricSurface<impl Fn(f64, f64) -> SurfaceJet + Sync> {
-    let jet = |x: f64, y: f64| SurfaceJet {
-        point: DVec3::new(x, y, x * y),
-        first: [DVec3::new(1.0, 0.0, y), DVec3::new(0.0, 1.0, x)],
-        second: [DVec3::ZERO, DVec3::Z, DVec3::ZERO],
-    };
-    ParametricSurface::new([[-1.0, 1.0], [-1.0, 1.0]], [17, 17], jet).unwrap()
+    ParametricSurface::new([[-1.0, 1.0], [-1.0, 1.0]], [17, 17], surfaces::saddle()).unwrap()
 }
 
 /// Strips of z = xy + lift between the given values of y, along x over [−x, x].
