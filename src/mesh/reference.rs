@@ -170,47 +170,71 @@ impl<F: Fn(f64, f64) -> SurfaceJet + Sync> ParametricSurface<F> {
         [0, 1].map(|k| snapped(at[k], self.ranges[k]))
     }
 
-    /// The parameters of the nearest point to a finite point, by Newton's method on half the squared distance within the rectangle.
-    ///
-    /// With `d = S − p` the gradient is `(d·S_u, d·S_v)`, and the second derivatives are `S_u·S_u + d·S_uu` and so on. Where they
-    /// are not positive definite the terms of `d` are left out, which leads downhill. A parameter at an end of its range that the
-    /// gradient pushes outward stays there, and a step that would leave the rectangle ends where it meets its side: to take the
-    /// nearest point of the rectangle instead could lead uphill.
+    /// The parameters of the nearest point to a finite point ([`nearest_from`]).
     pub fn nearest_parameters(&self, point: DVec3) -> [f64; 2] {
-        let mut at = self.clamped(self.seed(point));
-        for _ in 0..MOST_STEPS {
-            let jet = self.at(at[0], at[1]);
-            let apart = jet.point - point;
-            let slope = jet.first.map(|first| apart.dot(first));
-            let is_held = [0, 1].map(|k| {
-                (at[k] <= self.ranges[k][0] && slope[k] >= 0.0) || (at[k] >= self.ranges[k][1] && slope[k] <= 0.0)
-            });
-            let step = step_within(at, self.ranges, is_held, |is_held| newton_step(&jet, apart, slope, is_held));
-            let still = |k: usize| step[k].abs() <= 4.0 * f64::EPSILON * (self.ranges[k][1] - self.ranges[k][0]);
-            if still(0) && still(1) {
+        self.foot(point).0
+    }
+
+    fn foot(&self, point: DVec3) -> ([f64; 2], SurfaceJet, [bool; 2]) {
+        let start = self.clamped(self.seed(point));
+        let (ranges, still) = (self.ranges, 1e-7 * self.diagonal);
+        nearest_from(point, start, ranges, still, |at| self.clamped(at), |at| self.at(at[0], at[1]))
+    }
+}
+
+/// The parameters of the point of a surface that is nearest to a finite point, the surface there, and whether each parameter is at
+/// an end of its range beyond which the distance falls: by Newton's method on half the squared distance, from `at` on, within
+/// `ranges`. `inside` puts parameters up to round-off into them; a step that moves the point by less than `still`, in model units, is
+/// taken though the distance does not fall.
+///
+/// With `d = S − p` the gradient is `(d·S_u, d·S_v)`, and the second derivatives are `S_u·S_u + d·S_uu` and so on. Where they
+/// are not positive definite the terms of `d` are left out, which leads downhill. A parameter at an end of its range that the
+/// gradient pushes outward stays there, and a step that would leave the rectangle ends where it meets its side: to take the
+/// nearest point of the rectangle instead could lead uphill.
+pub(crate) fn nearest_from(
+    point: DVec3,
+    mut at: [f64; 2],
+    ranges: [[f64; 2]; 2],
+    still: f64,
+    inside: impl Fn([f64; 2]) -> [f64; 2],
+    surface: impl Fn([f64; 2]) -> SurfaceJet,
+) -> ([f64; 2], SurfaceJet, [bool; 2]) {
+    let mut jet = surface(at);
+    let held = |at: [f64; 2], jet: &SurfaceJet| {
+        let slope = jet.first.map(|first| (jet.point - point).dot(first));
+        [0, 1].map(|k| (at[k] <= ranges[k][0] && slope[k] >= 0.0) || (at[k] >= ranges[k][1] && slope[k] <= 0.0))
+    };
+    for _ in 0..MOST_STEPS {
+        let apart = jet.point - point;
+        let slope = jet.first.map(|first| apart.dot(first));
+        let step = step_within(at, ranges, held(at, &jet), |is_held| newton_step(&jet, apart, slope, is_held));
+        let is_small = |k: usize| step[k].abs() <= 4.0 * f64::EPSILON * (1.0 + at[k].abs());
+        if is_small(0) && is_small(1) {
+            break;
+        }
+        let mut factor = 1.0;
+        let found = (0..MOST_HALVINGS).find_map(|_| {
+            let trial = inside([at[0] + factor * step[0], at[1] + factor * step[1]]);
+            factor *= 0.5;
+            let jet = surface(trial);
+            (jet.point.distance_squared(point) < apart.length_squared()).then_some((trial, jet))
+        });
+        match found {
+            Some(next) => (at, jet) = next,
+            None => {
+                // Distances no longer tell points apart: the whole step is right if it is small.
+                let trial = inside([at[0] + step[0], at[1] + step[1]]);
+                let there = surface(trial);
+                if there.point.distance(jet.point) < still {
+                    (at, jet) = (trial, there);
+                }
                 break;
             }
-            let mut factor = 1.0;
-            let found = (0..MOST_HALVINGS).find_map(|_| {
-                let trial = self.clamped([at[0] + factor * step[0], at[1] + factor * step[1]]);
-                factor *= 0.5;
-                let distance = self.at(trial[0], trial[1]).point.distance_squared(point);
-                (distance < apart.length_squared()).then_some(trial)
-            });
-            match found {
-                Some(trial) => at = trial,
-                None => {
-                    // Distances no longer tell points apart: the whole step is right if it is small.
-                    let trial = self.clamped([at[0] + step[0], at[1] + step[1]]);
-                    if self.at(trial[0], trial[1]).point.distance(jet.point) < 1e-7 * self.diagonal {
-                        at = trial;
-                    }
-                    break;
-                }
-            }
         }
-        at
     }
+    let slope = jet.first.map(|first| (jet.point - point).dot(first));
+    let is_beyond = |k: usize| (at[k] <= ranges[k][0] && slope[k] > 0.0) || (at[k] >= ranges[k][1] && slope[k] < 0.0);
+    (at, jet, [0, 1].map(is_beyond))
 }
 
 /// The parameter within a range, at an end that it is within round-off of: what is to be at the end is there to the last bit.
@@ -227,7 +251,7 @@ pub(crate) fn snapped(at: f64, [low, high]: [f64; 2]) -> f64 {
 
 /// The step that `step` gives for the parameters that are not held, shortened to where it leaves the ranges. Where it would leave them
 /// from where it is, though downhill is inward, each parameter takes the step that it takes alone.
-pub(crate) fn step_within(
+fn step_within(
     at: [f64; 2],
     ranges: [[f64; 2]; 2],
     is_held: [bool; 2],
@@ -267,8 +291,7 @@ fn newton_step(jet: &SurfaceJet, apart: DVec3, slope: [f64; 2], is_held: [bool; 
 
 impl<F: Fn(f64, f64) -> SurfaceJet + Sync> ReferenceSurface for ParametricSurface<F> {
     fn nearest(&self, point: DVec3) -> SurfaceFoot {
-        let at = self.nearest_parameters(point);
-        let jet = self.at(at[0], at[1]);
+        let (at, jet, _) = self.foot(point);
         let normal = jet.normal();
         let is_at_end = (0..2).any(|k| self.ranges[k].contains(&at[k]));
         let overhang = if is_at_end { (point - jet.point).reject_from_normalized(normal).length() } else { 0.0 };

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::Field;
 use super::boundary::{Boundary, Rim};
-use super::walk::walk;
+use super::matching::Matching;
 use crate::error::{Error, Result, Status, finite};
 use crate::mesh::grid::check_finite;
 use crate::mesh::level_curves::{LevelCurve, level_curves};
@@ -14,9 +14,6 @@ use crate::mesh::{SurfacePoint, TriangleMesh};
 
 /// Boundaries at most.
 const MOST_LEVELS: usize = 100_000;
-
-/// From so many places along a curve it is looked which curve of the next level the field leads to.
-const PROBES: usize = 5;
 
 /// Which levels are boundaries.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,6 +121,10 @@ pub struct Boundaries {
     pub dropped: Vec<Dropped>,
     /// Levels between which and the next one curves split, join or end, so that no strip is there.
     pub unmatched: Vec<f64>,
+    /// Pairs of boundaries of which a part of one is the other: where a level leaves the surface in its middle, a strip ends at a
+    /// boundary that joins the curves of the next level beyond the surface, and other strips begin at these curves. First of a pair
+    /// is the one that a strip ends at.
+    pub meets: Vec<[usize; 2]>,
 }
 
 impl Boundaries {
@@ -145,7 +146,8 @@ impl Boundaries {
 /// The level curves of a function with these values at the points as strip boundaries.
 ///
 /// Curves of fewer than 3 points or too short are dropped, and listed. If several curves have a level, each is followed by that of
-/// the next level to which the field leads, if each of both has one such; otherwise the level is listed as unmatched.
+/// the next level to which the field leads, if each of both has one such. Where one curve leads to several with the rim between them,
+/// or several to one, these are joined beyond the rim ([`Boundaries::meets`]); otherwise the level is listed as unmatched.
 ///
 /// # Errors
 /// Not one value for each point or one that is not finite (`values`, `values[i]`); a field of another mesh (`field`); levels or options out of range (`levels`,
@@ -166,7 +168,7 @@ pub fn level_boundaries(
         values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
     ];
     let (levels, spacing) = levels.between(range)?;
-    let rim = Rim::new(mesh, field);
+    let rim = Rim::new(mesh, field)?;
     let mut found: Vec<Vec<(Boundary, f64)>> = Vec::new();
     for (k, &level) in levels.iter().enumerate() {
         let curves = level_curves(mesh, values, level)?;
@@ -193,8 +195,7 @@ pub fn level_boundaries(
         let corners = mesh.triangles()[at.triangle as usize];
         (0..3).map(|k| at.weights[k] * values[corners[k] as usize]).sum::<f64>()
     };
-    let matched = matched(mesh, field, &groups, &value);
-    Ok(Boundaries { dropped, ..chained(&rim, groups, &matched, options) })
+    Ok(Boundaries { dropped, ..Matching::new(&rim, groups, &value).chained(options) })
 }
 
 /// The curves of each level that has any, without those of fewer than 3 points or below the length that stands beside each, and what
@@ -251,98 +252,6 @@ pub(super) fn ordered(rim: &Rim<'_>, mut chain: Vec<Boundary>) -> std::result::R
     }
 }
 
-/// What follows a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Next {
-    /// This one of the next group.
-    Curve(usize),
-    /// The rim of the surface.
-    Rim,
-    /// A curve that other ones lead to as well.
-    Shared,
-}
-
-/// For each curve of each group what follows it.
-fn matched(
-    mesh: &TriangleMesh,
-    field: &Field,
-    groups: &[Vec<Boundary>],
-    value: &dyn Fn(SurfacePoint) -> f64,
-) -> Vec<Vec<Next>> {
-    let mut matched = Vec::new();
-    for pair in groups.windows(2) {
-        let (own, others) = (&pair[0], &pair[1]);
-        if own.len() == 1 && others.len() == 1 {
-            matched.push(vec![Next::Curve(0)]);
-            continue;
-        }
-        let mut is_hit = vec![vec![false; others.len()]; own.len()];
-        for (curve, hits) in own.iter().zip(&mut is_hit) {
-            for probe in 0..PROBES {
-                let place = (probe * 2 + 1) * curve.points.len() / (2 * PROBES);
-                let Some(Some(from)) = curve.on_surface.get(place) else { continue };
-                let walked = walk(mesh, field, *from, 1.0, &mut |at| value(at) >= others[0].level);
-                if !walked.is_out {
-                    hits[nearest(others, mesh.position(walked.end))] = true;
-                }
-            }
-        }
-        let next = |i: usize| {
-            let hits: Vec<usize> = (0..others.len()).filter(|&j| is_hit[i][j]).collect();
-            match hits[..] {
-                [] => Next::Rim,
-                [j] if (0..own.len()).all(|other| other == i || !is_hit[other][j]) => Next::Curve(j),
-                _ => Next::Shared,
-            }
-        };
-        matched.push((0..own.len()).map(next).collect());
-    }
-    matched.extend(groups.last().map(|group| vec![Next::Rim; group.len()]));
-    matched
-}
-
-fn nearest(curves: &[Boundary], point: DVec3) -> usize {
-    let distance =
-        |curve: &Boundary| curve.points.iter().map(|p| p.distance_squared(point)).fold(f64::INFINITY, f64::min);
-    (0..curves.len()).min_by(|&a, &b| distance(&curves[a]).total_cmp(&distance(&curves[b]))).unwrap_or(0)
-}
-
-/// Puts curves that follow each other into chains, and completes each.
-fn chained(rim: &Rim<'_>, groups: Vec<Vec<Boundary>>, matched: &[Vec<Next>], options: &BoundaryOptions) -> Boundaries {
-    let mut has_before: Vec<Vec<bool>> = groups.iter().map(|group| vec![false; group.len()]).collect();
-    let mut is_shared = has_before.clone();
-    let mut found = Boundaries::default();
-    for (k, nexts) in matched.iter().enumerate() {
-        for next in nexts {
-            match next {
-                Next::Curve(j) => has_before[k + 1][*j] = true,
-                Next::Shared => is_shared[k + 1].iter_mut().for_each(|is_shared| *is_shared = true),
-                Next::Rim => {}
-            }
-        }
-        if nexts.contains(&Next::Shared) {
-            found.unmatched.push(groups[k][0].level);
-        }
-    }
-    for first in 0..groups.len() {
-        for i in (0..groups[first].len()).filter(|&i| !has_before[first][i]) {
-            let (mut chain, mut at) = (Vec::new(), (first, i));
-            let end = loop {
-                chain.push(groups[at.0][at.1].clone());
-                match matched[at.0][at.1] {
-                    Next::Curve(j) => at = (at.0 + 1, j),
-                    end => break end,
-                }
-            };
-            let overshoots = [!is_shared[first][i], end == Next::Rim].map(|is_end| is_end && options.overshoots);
-            let start = found.boundaries.len();
-            found.boundaries.extend(rim.complete(chain, false, options.extends, overshoots));
-            found.strips.extend((start + 1..found.boundaries.len()).map(|k| [k - 1, k]));
-        }
-    }
-    found
-}
-
 /// Curves drawn by hand as strip boundaries, in the order along the field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
@@ -372,7 +281,7 @@ pub fn drawn_boundaries(
     }
     let mesh = surface.mesh();
     field.check(mesh)?;
-    let rim = Rim::new(mesh, field);
+    let rim = Rim::new(mesh, field)?;
     let mut chain: Vec<Boundary> = Vec::with_capacity(curves.len());
     for (k, curve) in curves.iter().enumerate() {
         let boundary = drawn(surface, &rim, curve, k).map_err(|error| error.at(format!("curves[{k}]")))?;

@@ -252,7 +252,7 @@ fn whatever_the_function_and_the_field_what_comes_back_is_finite() {
             let found = level_boundaries(&mesh, &field, &f, &levels, &options).unwrap();
             for boundary in &found.boundaries {
                 assert!(boundary.points.len() >= 3 && boundary.points.len() == boundary.on_surface.len());
-                assert!(boundary.points.iter().all(|p| p.is_finite() && p.length() < 20.0), "{seed}");
+                assert!(boundary.points.iter().all(|p| p.is_finite() && p.length() < 20.0), "{seed} {boundary:?}");
                 assert!(boundary.points.windows(2).all(|pair| pair[0] != pair[1]), "{seed}");
             }
             assert!(found.strips.iter().flatten().all(|&k| k < found.boundaries.len()));
@@ -281,4 +281,45 @@ fn closed_curves_may_be_drawn_around_a_hole() {
     let error =
         drawn_boundaries(&ReferenceMesh::new(&mesh), &field, &[circle(1.1), circle(0.7)], &options).unwrap_err();
     assert_eq!((error.status(), error.place()), (Status::Infeasible, "curves[1]"));
+}
+
+#[test]
+fn where_a_level_leaves_the_surface_in_its_middle_its_curves_are_joined_beyond_the_rim() {
+    // Below 0 the curves of f leave through the lower side, two of each level, one in each corner.
+    let (mesh, field) = plane(31, |x, _| DVec3::new(-1.2 * (x - 0.5), 1.0, 0.0));
+    let f = values(&mesh, |x, y| y - 0.6 * (x - 0.5).powi(2));
+    let sign = |is_up: bool| if is_up { 1.0 } else { -1.0 };
+    for is_up in [true, false] {
+        // Against the field, short curves follow long ones.
+        let directions = field.directions().iter().map(|a| sign(is_up) * *a).collect();
+        let field = Field::new(&mesh, directions, vec![true; mesh.points().len()]).unwrap();
+        let f: Vec<f64> = f.iter().map(|f| sign(is_up) * f).collect();
+        let levels: Vec<f64> = [-0.12, -0.08, -0.04, 0.03, 0.3, 0.6, 0.8].iter().map(|l| sign(is_up) * l).collect();
+        let levels = if is_up { levels } else { levels.into_iter().rev().collect() };
+        let options = BoundaryOptions { least_length: 0.0, ..Default::default() };
+        let found = level_boundaries(&mesh, &field, &f, &Levels::Values(levels), &options).unwrap();
+        assert!(found.unmatched.is_empty() && found.check().is_ok());
+        assert!(covers(&found, &mesh, &field), "{is_up}");
+        // One bridge, over two curves.
+        assert_eq!(found.meets.len(), 2);
+        for &[ends, begins] in &found.meets {
+            let [bridge, short] = if found.boundaries[ends].length() > found.boundaries[begins].length() {
+                [ends, begins]
+            } else {
+                [begins, ends]
+            };
+            let [bridge, short] = [bridge, short].map(|k| &found.boundaries[k]);
+            assert_eq!(bridge.level, short.level);
+            let on = short.points.iter().zip(&short.on_surface).filter(|(_, at)| at.is_some());
+            assert!(on.map(|(p, _)| p).all(|p| bridge.points.contains(p)));
+            // Between the short curves the bridge is beyond the rim, and leads on from one to the other.
+            let off = bridge.points.iter().zip(&bridge.on_surface).filter(|(_, at)| at.is_none());
+            assert!(
+                off.clone().count() > 5
+                    && off.map(|(p, _)| p).all(|p| p.x < 0.0 || p.x > 1.0 || p.y < 0.0 || p.y > 1.0)
+            );
+            let inner = &bridge.points[1..bridge.points.len() - 1];
+            assert!(inner.windows(2).all(|pair| pair[0].distance(pair[1]) < 0.2));
+        }
+    }
 }

@@ -6,10 +6,13 @@
 //! at all: there a boundary more is made, by moving the points of the first or last one along the field, by as much as it is to the
 //! rim. What is too much is trimmed later.
 
+use std::ops::ControlFlow;
+
 use glam::DVec3;
 
 use super::Field;
-use super::walk::walk;
+use super::tracing::{End, Followed, Options, Sense, Tracer};
+use crate::error::Result;
 use crate::mesh::triangles::blend;
 use crate::mesh::{SurfacePoint, TriangleMesh};
 
@@ -17,16 +20,27 @@ use crate::mesh::{SurfacePoint, TriangleMesh};
 const LEAST_SINE: f64 = 0.1;
 
 /// Extensions and overshoots are longer than what was asked for by this part of it.
-const MARGIN: f64 = 0.1;
+pub(super) const MARGIN: f64 = 0.1;
 
-/// The least extension of an end that needs one, in mean edges.
+/// The least extension of an end on the rim, in mean edges.
 const LEAST_EXTENSION: f64 = 0.25;
 
 /// Points of a boundary nearer than this to the one before, in mean edges, are left out: directions between them are round-off.
 const MERGED: f64 = 1e-3;
 
+/// Curves of the field are followed for so many diagonals of the mesh at most.
+const FAR: f64 = 1e3;
+
+/// No boundary is extended for a ruling farther than this part of the mesh's diagonal: rulings that spread ask the more the farther they
+/// are from the surface.
+const FARTHEST: f64 = 0.25;
+
 /// The least distance of an overshoot, as a part of its largest, so that rulings have a length.
 const LEAST_OVERSHOOT: f64 = 0.5;
+
+/// A point is moved as far as any of so many to both sides: from the end of a curve on the rim the field may run along the rim, and
+/// out at once.
+const BESIDE: usize = 3;
 
 /// A strip boundary. What the field leads to is on its left, seen from where the normals point.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,11 +95,17 @@ impl Boundary {
         Some((end, (end - inner).try_normalize()?))
     }
 
+    /// Goes on straight for so far, by one more point, or by moving that which is there.
     fn extend(&mut self, at_end: bool, by: f64, least: f64) {
         let Some((end, outward)) = self.reach(at_end, least) else { return };
-        let place = if at_end { self.points.len() } else { 0 };
-        self.points.insert(place, end + by * outward);
-        self.on_surface.insert(place, None);
+        let last = if at_end { self.points.len() - 1 } else { 0 };
+        if self.on_surface[last].is_none() {
+            self.points[last] = end + by * outward;
+        } else {
+            let place = if at_end { self.points.len() } else { 0 };
+            self.points.insert(place, end + by * outward);
+            self.on_surface.insert(place, None);
+        }
     }
 }
 
@@ -94,6 +114,7 @@ impl Boundary {
 pub(super) struct Rim<'a> {
     mesh: &'a TriangleMesh,
     field: &'a Field,
+    tracer: Tracer<'a>,
     /// For each point of the boundary its loop and place in it.
     places: Vec<(u32, u32)>,
     mean_edge: f64,
@@ -103,12 +124,32 @@ pub(super) struct Rim<'a> {
 type Stretch = Vec<u32>;
 
 impl<'a> Rim<'a> {
-    pub fn new(mesh: &'a TriangleMesh, field: &'a Field) -> Self {
+    /// # Errors
+    /// A field of another mesh (`field`).
+    pub fn new(mesh: &'a TriangleMesh, field: &'a Field) -> Result<Self> {
+        // A curve that takes more steps than this goes in circles.
+        let options = Options { most_steps: mesh.triangles().len() + 100, ..Options::default() };
+        let tracer = Tracer::new(mesh, field, &options)?;
         let mut places = vec![(u32::MAX, 0); mesh.points().len()];
         for (l, points) in mesh.boundary().iter().enumerate() {
             points.iter().enumerate().for_each(|(k, &i)| places[i as usize] = (l as u32, k as u32));
         }
-        Self { mesh, field, places, mean_edge: mesh.mean_edge() }
+        Ok(Self { mesh, field, tracer, places, mean_edge: mesh.mean_edge() })
+    }
+
+    /// Where the field leads to from a point, until `step` says to stop; none if the point is none of the mesh.
+    pub fn follow(
+        &self,
+        from: SurfacePoint,
+        sense: Sense,
+        mut step: impl FnMut(SurfacePoint) -> ControlFlow<()>,
+    ) -> Option<Followed> {
+        self.tracer.follow(from, sense, FAR * self.mesh.diagonal(), |_, followed| step(followed.at)).ok()
+    }
+
+    /// Where a point of the mesh is.
+    pub fn position(&self, at: SurfacePoint) -> DVec3 {
+        self.mesh.position(at)
     }
 
     pub fn mean_edge(&self) -> f64 {
@@ -145,33 +186,25 @@ impl<'a> Rim<'a> {
         stretch
     }
 
-    /// How far beyond an end the lines along the field from these points of the rim meet the tangent, at most, and how far that is
+    /// How far beyond an end the lines along the field from these points of the rim pass the tangent, at most, and how far that is
     /// from the rim.
-    ///
-    /// On `P + e T` and `r + s a` the points nearest to each other have, with `d = r − P` and `c = T·a`,
-    /// `e = (d·T − c d·a)/(1 − c²)` and `s = (c d·T − d·a)/(1 − c²)`.
-    fn asked(&self, (end, outward): (DVec3, DVec3), stretch: &[u32]) -> [f64; 2] {
-        let mut most = [0.0_f64; 2];
-        for &i in stretch.iter().filter(|&&i| self.field.is_known()[i as usize]) {
-            let (a, apart) = (self.field.directions()[i as usize], self.mesh.points()[i as usize] - end);
-            let c = outward.dot(a);
-            if 1.0 - c * c >= LEAST_SINE * LEAST_SINE {
-                let beyond = (apart.dot(outward) - c * apart.dot(a)) / (1.0 - c * c);
-                let along = (c * apart.dot(outward) - apart.dot(a)) / (1.0 - c * c);
-                // Lines that run nearly along the boundary must not take it far away.
-                if beyond > 0.0 {
-                    most[0] = most[0].max(beyond.min(2.0 * apart.length()));
-                    most[1] = most[1].max(along.abs().min(2.0 * apart.length()));
-                }
-            }
-        }
-        most
+    fn asked(&self, reach: (DVec3, DVec3), stretch: &[u32]) -> [f64; 2] {
+        let known = stretch.iter().map(|&i| i as usize).filter(|&i| self.field.is_known()[i]);
+        known.fold([0.0; 2], |most, i| {
+            let passed = passed(reach, self.mesh.points()[i], self.field.directions()[i]);
+            [most[0].max(passed[0]), most[1].max(passed[1])]
+        })
     }
 
     /// The stretches of rim beside each end of an open boundary, start and end, towards the boundary before and after it. Along the
     /// rim the surface is to the left, so what follows a boundary lies backward from its start and forward from its end. Without
-    /// one before or after, half of the way to its own other end.
-    fn stretches(&self, own: &Boundary, neighbours: [Option<&Boundary>; 2]) -> [[Stretch; 2]; 2] {
+    /// one before or after, half of the way to its own other end if one beyond the surface is added there (`overshoots`).
+    fn stretches(
+        &self,
+        own: &Boundary,
+        neighbours: [Option<&Boundary>; 2],
+        overshoots: [bool; 2],
+    ) -> [[Stretch; 2]; 2] {
         let ends = |boundary: &Boundary| {
             [boundary.on_surface.first(), boundary.on_surface.last()].map(|at| at.copied().flatten())
         };
@@ -180,6 +213,7 @@ impl<'a> Rim<'a> {
                 let is_forward = (end == 1) == (side == 1);
                 match neighbours[side] {
                     Some(other) => self.stretch(ends(own)[end], ends(other)[end], is_forward),
+                    None if !overshoots[side] => Vec::new(),
                     None => {
                         let mut stretch = self.stretch(ends(own)[end], ends(own)[1 - end], is_forward);
                         stretch.truncate(stretch.len().div_ceil(2));
@@ -205,7 +239,7 @@ impl<'a> Rim<'a> {
             ((is_there || is_cyclic) && count > 1).then(|| &chain[other])
         };
         let stretches: Vec<_> =
-            (0..count).map(|k| self.stretches(&chain[k], [0, 1].map(|side| neighbour(k, side)))).collect();
+            (0..count).map(|k| self.stretches(&chain[k], [0, 1].map(|side| neighbour(k, side)), overshoots)).collect();
         let mut extended = chain.clone();
         for (boundary, beside) in extended.iter_mut().zip(&stretches).filter(|_| extends) {
             self.extend(boundary, beside);
@@ -218,44 +252,90 @@ impl<'a> Rim<'a> {
                 let reach = chain[k].reach(end == 1, self.mean_edge);
                 reach.map_or(0.0, |reach| self.asked(reach, &stretches[k][end][side])[1])
             });
-            let mut added = overshoots[side].then(|| self.overshoot(&extended[k], side, reaches)).flatten();
+            let beside = stretches[k].iter().flat_map(|end| end[side].iter().copied());
+            let mut added = overshoots[side].then(|| self.overshoot(&extended[k], side, reaches, beside)).flatten();
             if let Some(added) = added.as_mut().filter(|_| extends) {
                 self.extend(added, &stretches[k]);
             }
             added
         };
         let (before, after) = (over(0, 0), over(count - 1, 1));
-        before.into_iter().chain(extended).chain(after).collect()
+        let mut completed: Vec<Boundary> = before.into_iter().chain(extended).chain(after).collect();
+        if extends {
+            // Each is extended to where the ruling from its neighbour's end leads, backward, then forward. A boundary that was
+            // extended by what the one ahead asked for then asks as much of the one behind, and rulings of both end on each other.
+            for k in (1..completed.len()).rev() {
+                let (behind, own) = completed.split_at_mut(k);
+                self.extend_to_ruling(&mut behind[k - 1], &own[0]);
+            }
+            for k in 1..completed.len() {
+                let (own, ahead) = completed.split_at_mut(k);
+                self.extend_to_ruling(&mut ahead[0], &own[k - 1]);
+            }
+        }
+        completed
     }
 
-    /// Extends the ends of an open boundary as the stretches of rim beside each ask for.
-    fn extend(&self, boundary: &mut Boundary, beside: &[[Stretch; 2]; 2]) {
-        if boundary.is_closed {
-            return;
-        }
+    /// Extends the ends of an open boundary to where the straight rulings from those of its neighbour pass them.
+    fn extend_to_ruling(&self, boundary: &mut Boundary, neighbour: &Boundary) {
+        let directions = self.directions(neighbour);
         for end in [0, 1] {
-            let Some(reach) = boundary.reach(end == 1, self.mean_edge) else { continue };
-            let asked = beside[end].iter().map(|stretch| self.asked(reach, stretch)[0]).fold(0.0, f64::max);
-            if asked > 0.0 {
-                let by = (1.0 + MARGIN) * asked + LEAST_EXTENSION * self.mean_edge;
-                boundary.extend(end == 1, by, self.mean_edge);
+            let last = if end == 1 { neighbour.points.len() - 1 } else { 0 };
+            let is_asked = self.is_extended(boundary, end) && self.is_extended(neighbour, end);
+            let Some(reach) = boundary.reach(end == 1, self.mean_edge).filter(|_| is_asked) else { continue };
+            let [beyond, _] = directions[last].map_or([0.0; 2], |a| passed(reach, neighbour.points[last], a));
+            if beyond > MERGED * self.mean_edge && beyond < FARTHEST * self.mesh.diagonal() {
+                boundary.extend(end == 1, beyond, self.mean_edge);
             }
         }
     }
 
+    /// Extends the ends of an open boundary that are on the rim, or beyond it, as the stretches of rim beside each ask for.
+    fn extend(&self, boundary: &mut Boundary, beside: &[[Stretch; 2]; 2]) {
+        for end in [0, 1] {
+            let reach = boundary.reach(end == 1, self.mean_edge);
+            let Some(reach) = reach.filter(|_| self.is_extended(boundary, end)) else { continue };
+            let asked = beside[end].iter().map(|stretch| self.asked(reach, stretch)[0]).fold(0.0, f64::max);
+            let by = (1.0 + MARGIN) * asked + LEAST_EXTENSION * self.mean_edge;
+            boundary.extend(end == 1, by, self.mean_edge);
+        }
+    }
+
+    /// Whether an end of a boundary is on the rim or beyond it: a curve that ends within the surface was drawn so.
+    fn is_extended(&self, boundary: &Boundary, end: usize) -> bool {
+        let at = if end == 1 { boundary.on_surface.last() } else { boundary.on_surface.first() };
+        !boundary.is_closed && at.is_some_and(|at| at.is_none() || self.place(*at).is_some())
+    }
+
     /// The boundary moved against the field (side 0) or along it (side 1), by the way to the rim; none if that is nothing.
-    /// `reaches`: how far the extensions of its start and end are from the rim.
-    fn overshoot(&self, from: &Boundary, side: usize, reaches: [f64; 2]) -> Option<Boundary> {
+    /// `reaches`: how far the extensions of its start and end are from the rim. `beside`: the points of the rim that are to be passed.
+    fn overshoot(
+        &self,
+        from: &Boundary,
+        side: usize,
+        reaches: [f64; 2],
+        beside: impl Iterator<Item = u32>,
+    ) -> Option<Boundary> {
         let sign = if side == 0 { -1.0 } else { 1.0 };
         let count = from.points.len();
         // In a straight line, and none where the field goes in circles.
+        let sense = if side == 0 { Sense::Backward } else { Sense::Forward };
         let way = |at: SurfacePoint| {
-            let walked = walk(self.mesh, self.field, at, sign, &mut |_| false);
-            walked.is_out.then(|| self.mesh.position(walked.end).distance(self.mesh.position(at)))
+            let followed = self.follow(at, sense, |_| ControlFlow::Continue(()))?;
+            let is_out = matches!(followed.end, End::Boundary | End::Unknown);
+            is_out.then(|| followed.position.distance(self.position(at)))
         };
         let mut ways: Vec<Option<f64>> = from.on_surface.iter().map(|at| way((*at)?)).collect();
         for (i, reach) in [(0, reaches[0]), (count - 1, reaches[1])] {
             ways[i] = Some(ways[i].unwrap_or(0.0).max(reach));
+        }
+        // Corners of the rim may be between the ways of two points.
+        for i in beside.map(|i| i as usize).filter(|&i| self.field.is_known()[i]) {
+            let (point, a) = (self.mesh.points()[i], self.field.directions()[i]);
+            let Some((k, way)) = crossed(&from.points, point, a) else { continue };
+            for end in [k, k + 1] {
+                ways[end] = Some(ways[end].unwrap_or(0.0).max(way));
+            }
         }
         let most = ways.iter().flatten().copied().fold(0.0, f64::max);
         if !(most > MERGED * self.mean_edge) {
@@ -263,8 +343,8 @@ impl<'a> Rim<'a> {
         }
         let way = |i: usize| ways[i].unwrap_or(0.0);
         let widened = |i: usize| {
-            let near = [i.checked_sub(1), Some(i), Some(i + 1).filter(|&k| k < count)];
-            let largest = near.into_iter().flatten().map(way).fold(LEAST_OVERSHOOT * most, f64::max);
+            let near = i.saturating_sub(BESIDE)..=(i + BESIDE).min(count - 1);
+            let largest = near.map(way).fold(LEAST_OVERSHOOT * most, f64::max);
             (1.0 + MARGIN) * largest
         };
         let directions = self.directions(from);
@@ -343,4 +423,35 @@ impl<'a> Rim<'a> {
         };
         (0..count).map(crossing).collect()
     }
+}
+
+/// How far beyond an end, given with the outward tangent, the line through `from` along `a` passes the tangent, and how far that is
+/// from `from`; 0 if it does not.
+///
+/// On `P + e T` and `r + s a` the points nearest to each other have, with `d = r − P` and `c = T·a`,
+/// `e = (d·T − c d·a)/(1 − c²)` and `s = (c d·T − d·a)/(1 − c²)`.
+fn passed((end, outward): (DVec3, DVec3), from: DVec3, a: DVec3) -> [f64; 2] {
+    let (apart, c) = (from - end, outward.dot(a));
+    if 1.0 - c * c < LEAST_SINE * LEAST_SINE {
+        return [0.0; 2];
+    }
+    let beyond = (apart.dot(outward) - c * apart.dot(a)) / (1.0 - c * c);
+    let along = (c * apart.dot(outward) - apart.dot(a)) / (1.0 - c * c);
+    // Lines that run nearly along the boundary must not take it far away.
+    if beyond > 0.0 { [beyond, along.abs()].map(|way| way.min(2.0 * apart.length())) } else { [0.0; 2] }
+}
+
+/// The segment of a polyline that the line through a point along `a` passes most nearly, and how far along the line that is.
+fn crossed(points: &[DVec3], from: DVec3, a: DVec3) -> Option<(usize, f64)> {
+    let nearest = |pair: &[DVec3]| {
+        // Both ends as seen along the line.
+        let [p, q] = [pair[0] - from, pair[1] - from];
+        let (across, chord) = (p - p.dot(a) * a, (q - p) - (q - p).dot(a) * a);
+        let part = (-across.dot(chord) / chord.length_squared()).clamp(0.0, 1.0);
+        let part = if part.is_finite() { part } else { 0.0 };
+        ((across + part * chord).length(), p.lerp(q, part).dot(a).abs())
+    };
+    let all = points.windows(2).map(nearest).enumerate();
+    let best = all.min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
+    Some((best.0, best.1.1))
 }

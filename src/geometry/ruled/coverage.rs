@@ -8,17 +8,16 @@ use glam::{DMat3, DVec3};
 use super::Strip;
 use super::pull::{across, along};
 use crate::mesh::ClosestPoints;
-use crate::mesh::reference::{SurfaceJet, snapped, step_within};
+use crate::mesh::grid::diagonal;
+use crate::mesh::reference::{nearest_from, snapped};
 
 /// Columns of quads in each span, and rows, of the mesh in which the nearest strip is looked for.
 const COLUMNS_PER_SPAN: usize = 4;
 const ROWS: usize = 2;
 
-/// Steps of Newton's method at most: it takes 3 or 4.
-const MOST_STEPS: usize = 20;
-
-/// How often a step that leads nowhere nearer is halved.
-const MOST_HALVINGS: usize = 30;
+/// A step that moves the nearest point by less than this part of the strips' diagonal is taken though the distance does not fall, as
+/// then is round-off.
+const STILL: f64 = 1e-7;
 
 /// The nearest point of strips.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +28,17 @@ pub(super) struct StripFoot {
     /// The projection onto the directions in which the distance from the foot's surroundings grows: the normal's; beyond a
     /// boundary, those across it; beyond a corner, all.
     pub(super) directions: DMat3,
+    /// The unit normal of the strip there; zero where it has none.
+    normal: DVec3,
+    /// Whether it is at an end of the strip beyond which the distance falls.
+    is_at_end: bool,
+}
+
+impl StripFoot {
+    /// How far the point asked for is beyond the strip, along its tangent plane; 0 where it is beside it.
+    pub(super) fn overhang(&self, point: DVec3) -> f64 {
+        if self.is_at_end { (point - self.point).reject_from_normalized(self.normal).length() } else { 0.0 }
+    }
 }
 
 /// Strips ready to be asked for their nearest point.
@@ -37,6 +47,7 @@ pub(super) struct NearestStrip<'a> {
     closest: ClosestPoints,
     /// The strip and the column of each pair of triangles' quad.
     quads: Vec<(u32, u32)>,
+    still: f64,
 }
 
 impl<'a> NearestStrip<'a> {
@@ -59,47 +70,52 @@ impl<'a> NearestStrip<'a> {
                 }
             }
         }
-        Some(Self { strips, closest: ClosestPoints::of_triangles(&points, &triangles).ok()?, quads })
+        let closest = ClosestPoints::of_triangles(&points, &triangles).ok()?;
+        Some(Self { strips, closest, quads, still: STILL * diagonal(&points) })
     }
 
     /// The nearest point. The strip is the one whose mesh is nearest; the point is found on it by Newton's method on half the
     /// squared distance from where the mesh is nearest, within the strip, as for any surface with two parameters.
     pub(super) fn nearest(&self, point: DVec3) -> StripFoot {
         let (near, piece) = self.closest.nearest_on_piece(point);
+        self.from(point, near, piece)
+    }
+
+    /// The strips whose meshes come nearer to a point than `distance`, ascending, each with the piece of its mesh that is nearest.
+    pub(super) fn within(&self, point: DVec3, distance: f64) -> Vec<(usize, usize)> {
+        let mut found: Vec<(usize, usize, f64)> = Vec::new();
+        for (piece, apart) in self.closest.within(point, distance) {
+            let strip = self.quads[piece / 2].0 as usize;
+            match found.last_mut().filter(|last| last.0 == strip) {
+                Some(last) if last.2 <= apart => {}
+                Some(last) => (last.1, last.2) = (piece, apart),
+                None => found.push((strip, piece, apart)),
+            }
+        }
+        found.into_iter().map(|(strip, piece, _)| (strip, piece)).collect()
+    }
+
+    /// The nearest point of the strip of a piece of its mesh, found from there.
+    pub(super) fn from_piece(&self, point: DVec3, piece: usize) -> StripFoot {
+        self.from(point, point, piece)
+    }
+
+    fn from(&self, point: DVec3, near: DVec3, piece: usize) -> StripFoot {
         let (strip_index, column) = self.quads[piece / 2];
         let strip = &self.strips[strip_index as usize];
-        let mut at = inside(strip, seed(strip, f64::from(column) / COLUMNS_PER_SPAN as f64, near));
-        let mut jet = strip.at(at[0], at[1]);
-        let mut is_held = [false; 2];
+        let start = inside(strip, seed(strip, f64::from(column) / COLUMNS_PER_SPAN as f64, near));
         let around = if strip.basis().is_closed() { f64::INFINITY } else { 0.0 };
         let ranges = [[-around, strip.length_u() + around], [0.0, 1.0]];
-        for _ in 0..MOST_STEPS {
-            let apart = jet.point - point;
-            let slope = jet.first.map(|first| apart.dot(first));
-            is_held = held_ends(strip, at, slope);
-            let free = |is_held: [bool; 2]| newton_step(&jet, apart, slope, is_held);
-            let step = step_within(at, ranges, is_held, free);
-            if step[0].abs() <= 1e-14 * strip.length_u() && step[1].abs() <= 1e-14 {
-                break;
-            }
-            let mut factor = 1.0;
-            let next = (0..MOST_HALVINGS).find_map(|_| {
-                let next = inside(strip, [at[0] + factor * step[0], at[1] + factor * step[1]]);
-                factor *= 0.5;
-                let jet = strip.at(next[0], next[1]);
-                (jet.point.distance_squared(point) < apart.length_squared()).then_some((next, jet))
-            });
-            let Some(next) = next else { break };
-            (at, jet) = next;
-            is_held = held_ends(strip, at, jet.first.map(|first| (jet.point - point).dot(first)));
-        }
+        let (parameters, jet, is_held) =
+            nearest_from(point, start, ranges, self.still, |at| inside(strip, at), |at| strip.at(at[0], at[1]));
         let directions = match is_held {
             [false, false] => along(jet.normal()),
             [false, true] => across(jet.first[0].normalize_or_zero()),
             [true, false] => across(jet.first[1].normalize_or_zero()),
             [true, true] => DMat3::IDENTITY,
         };
-        StripFoot { strip: strip_index as usize, parameters: at, point: jet.point, directions }
+        let (normal, is_at_end) = (jet.normal(), is_held != [false; 2]);
+        StripFoot { strip: strip_index as usize, parameters, point: jet.point, directions, normal, is_at_end }
     }
 }
 
@@ -124,34 +140,6 @@ fn inside(strip: &Strip, [u, v]: [f64; 2]) -> [f64; 2] {
     let length = strip.length_u();
     let u = if strip.basis().is_closed() { u.rem_euclid(length) } else { snapped(u, [0.0, length]) };
     [u, snapped(v, [0.0, 1.0])]
-}
-
-/// Whether each parameter is at an end of its range beyond which the distance falls.
-fn held_ends(strip: &Strip, at: [f64; 2], slope: [f64; 2]) -> [bool; 2] {
-    let last = [strip.length_u(), 1.0];
-    [0, 1].map(|k| {
-        let is_around = k == 0 && strip.basis().is_closed();
-        !is_around && ((at[k] <= 0.0 && slope[k] > 0.0) || (at[k] >= last[k] && slope[k] < 0.0))
-    })
-}
-
-fn newton_step(jet: &SurfaceJet, apart: DVec3, slope: [f64; 2], is_held: [bool; 2]) -> [f64; 2] {
-    let [u, v] = jet.first;
-    let metric = [u.dot(u), u.dot(v), v.dot(v)];
-    let full = [0, 1, 2].map(|k| metric[k] + apart.dot(jet.second[k]));
-    let positive = |k: usize| if full[k] > 0.0 { full[k] } else { metric[k] };
-    match is_held {
-        [true, true] => [0.0, 0.0],
-        [true, false] => [0.0, -slope[1] / positive(2)],
-        [false, true] => [-slope[0] / positive(0), 0.0],
-        [false, false] => {
-            let determinant = |h: [f64; 3]| h[0] * h[2] - h[1] * h[1];
-            let h = if full[0] > 0.0 && determinant(full) > 0.0 { full } else { metric };
-            let over = -1.0 / determinant(h);
-            [over * (slope[0] * h[2] - slope[1] * h[1]), over * (slope[1] * h[0] - slope[0] * h[1])]
-        }
-    }
-    .map(|step| if step.is_finite() { step } else { 0.0 })
 }
 
 #[cfg(test)]

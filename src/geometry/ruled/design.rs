@@ -194,7 +194,7 @@ impl Design {
         }
         let reference = ReferenceMesh::new(&self.mesh);
         let mut found = Start { strips: Vec::new(), missed: Vec::new(), moved: Vec::new() };
-        let mut joints = Joints { pairs: Vec::new(), is_shared: options.is_shared };
+        let mut joints = Joints { is_shared: options.is_shared, ..Joints::default() };
         for chain in chains(&self.boundaries.strips) {
             let along: Vec<&Boundary> = chain.iter().map(|&k| &self.boundaries.boundaries[k]).collect();
             let ends = RulingEnds::new(&reference, &self.field, &along)?;
@@ -212,6 +212,13 @@ impl Design {
             found.missed.extend(made.missed);
             found.moved.extend(made.moved);
         }
+        let sides = self.chained_sides();
+        let strip_at = |boundary: usize, side: usize| {
+            sides.iter().find(|found| (found.1, found.2) == (side, boundary)).map(|found| found.0)
+        };
+        let meets =
+            self.boundaries.meets.iter().filter_map(|&[end, start]| Some([strip_at(end, 1)?, strip_at(start, 0)?]));
+        joints.partial = meets.collect();
         self.strips.clone_from(&found.strips);
         self.joints = joints;
         self.start = Some(found);
@@ -278,7 +285,8 @@ impl Design {
     /// As [`report`](fn@report).
     pub fn report(&self, surface: Option<&dyn ReferenceSurface>, options: &ReportOptions) -> Result<Report> {
         let mesh = ReferenceMesh::new(&self.mesh);
-        let options = ReportOptions { joints: Some(self.joints.pairs.clone()), ..options.clone() };
+        let joints = self.joints.pairs.iter().chain(&self.joints.partial).copied().collect();
+        let options = ReportOptions { joints: Some(joints), ..options.clone() };
         report(&self.strips, &mesh, surface.unwrap_or(&mesh), &options)
     }
 }

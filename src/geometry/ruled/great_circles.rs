@@ -27,7 +27,7 @@ pub fn great_circle_boundaries(
     if axes.is_empty() {
         return Err(Error::new(Status::InvalidArgumentLength, "expected at least 1, found none").at("axes"));
     }
-    let rim = Rim::new(mesh, field);
+    let rim = Rim::new(mesh, field)?;
     let (mut chain, mut dropped) = (Vec::with_capacity(axes.len()), Vec::new());
     for (k, &axis) in axes.iter().enumerate() {
         let place = format!("axes[{k}]");

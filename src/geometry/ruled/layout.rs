@@ -15,17 +15,20 @@ pub struct Joints {
     /// Whether such boundaries are one, with one set of control points, rather than pulled together. The two strips then have the
     /// same count of control points; where theirs differ at the start the means are taken.
     pub is_shared: bool,
+    /// Pairs of strips that meet along a part of their boundaries only, the second boundary of one and the first of the other: what
+    /// starts beside the other boundary is pulled to it, also where others are shared. A boundary may be in several pairs.
+    pub partial: Vec<[usize; 2]>,
 }
 
 impl Joints {
     /// Each strip joins the next.
     pub fn chain(strip_count: usize) -> Self {
-        Self { pairs: (1..strip_count).map(|i| [i - 1, i]).collect(), is_shared: false }
+        Self { pairs: (1..strip_count).map(|i| [i - 1, i]).collect(), ..Self::default() }
     }
 
     /// Each strip joins the next, the last one the first.
     pub fn ring(strip_count: usize) -> Self {
-        Self { pairs: (0..strip_count).map(|i| [i, (i + 1) % strip_count]).collect(), is_shared: false }
+        Self { pairs: (0..strip_count).map(|i| [i, (i + 1) % strip_count]).collect(), ..Self::default() }
     }
 }
 
@@ -143,6 +146,12 @@ fn check(strips: &[Strip], joints: &Joints) -> Result<()> {
             return Err(Error::new(Status::InvalidValue, reason).at(format!("joints.pairs[{k}]")));
         }
     }
+    for (k, pair) in joints.partial.iter().enumerate() {
+        if let Some(end) = (0..2).find(|&end| pair[end] >= strips.len()) {
+            let reason = format!("{} is out of range for {} strips", pair[end], strips.len());
+            return Err(Error::new(Status::IndexOutOfRange, reason).at(format!("joints.partial[{k}][{end}]")));
+        }
+    }
     let all: Vec<DVec3> =
         strips.iter().flat_map(|strip| [0, 1].map(|side| strip.control(side))).flatten().copied().collect();
     if !(diagonal(&all).is_finite() && diagonal(&all) > 0.0) {
@@ -192,12 +201,14 @@ mod tests {
     fn joints_that_cannot_be_are_named() {
         let strips = strips([0.0, 1.0, 2.0]);
         let place = |pairs: Vec<[usize; 2]>| {
-            Layout::new(&strips, &Joints { pairs, is_shared: false }).unwrap_err().place().to_owned()
+            Layout::new(&strips, &Joints { pairs, ..Joints::default() }).unwrap_err().place().to_owned()
         };
         assert_eq!(place(vec![[0, 2]]), "joints.pairs[0][1]");
         assert_eq!(place(vec![[0, 1], [0, 0]]), "joints.pairs[1][0]");
         let shared = Joints { is_shared: true, ..Joints::ring(1) };
         assert_eq!(Layout::new(&strips[..1], &shared).unwrap_err().place(), "joints.pairs[0]");
+        let partial = Joints { partial: vec![[0, 1], [2, 1]], ..Joints::default() };
+        assert_eq!(Layout::new(&strips, &partial).unwrap_err().place(), "joints.partial[1][0]");
         assert_eq!(Layout::new(&[], &Joints::default()).unwrap_err().place(), "strips");
         let other = Strip::new(CubicBasis::new(5, true).unwrap(), [0, 1].map(|side| strips[0].control(side).to_vec()));
         let mixed = [strips[0].clone(), other.unwrap()];

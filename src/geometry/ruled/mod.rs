@@ -33,6 +33,7 @@ pub mod level_function;
 #[cfg(test)]
 mod level_function_tests;
 mod level_terms;
+mod matching;
 pub mod optimise;
 pub mod orientation;
 pub mod periods;
@@ -53,7 +54,6 @@ pub mod terms;
 mod thin_plate;
 pub mod tracing;
 pub mod trim;
-mod walk;
 pub mod zebra;
 
 pub use boundary::Boundary;

@@ -110,7 +110,7 @@ pub fn periodic_boundaries(
         return Ok(PeriodicBoundaries { function, cuts, boundaries, is_cyclic: false, windings });
     }
     let values = split.values(&function.values, &rounded);
-    let rim = Rim::new(mesh, field);
+    let rim = Rim::new(mesh, field)?;
     let (mut chain, mut levels, mut windings, mut dropped) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for Stitched { level, curve, winding } in stitched(&split, mesh, &values, width, &counts, period)? {
         let boundary = of_curve(curve, (level as f64 + 0.5) * width, rim.mean_edge());
@@ -133,11 +133,11 @@ pub fn periodic_boundaries(
     let boundaries = if is_single {
         let strips = (0..count).filter(|_| count > 1).map(|k| [k, (k + 1) % count]).collect();
         let boundaries = rim.complete(chain, true, options.extends, [false; 2]);
-        Boundaries { boundaries, strips, dropped, unmatched: Vec::new() }
+        Boundaries { boundaries, strips, dropped, ..Boundaries::default() }
     } else {
         levels.dedup();
         let unmatched = levels.into_iter().map(|level| (level as f64 + 0.5) * width).collect();
-        Boundaries { boundaries: chain, strips: Vec::new(), dropped, unmatched }
+        Boundaries { boundaries: chain, dropped, unmatched, ..Boundaries::default() }
     };
     Ok(PeriodicBoundaries { function, cuts, boundaries, is_cyclic: is_single, windings })
 }
@@ -227,7 +227,7 @@ mod tests {
             assert!(found.boundaries.dropped.is_empty() && found.boundaries.unmatched.is_empty());
             assert_eq!(found.boundaries.strips[19], [19, 0]);
             assert!(found.windings.iter().all(|w| w.abs() <= 1) && found.function.critical.is_empty());
-            let rim = Rim::new(&tube.0, &tube.1);
+            let rim = Rim::new(&tube.0, &tube.1).unwrap();
             let mut worst: f64 = 0.0;
             for (k, boundary) in boundaries.iter().enumerate() {
                 assert!(!boundary.is_closed);

@@ -78,7 +78,7 @@ pub fn planar_boundaries(
     if planes.is_empty() {
         return Err(Error::new(Status::InvalidArgumentLength, "expected at least 1, found none").at("planes"));
     }
-    let rim = Rim::new(mesh, field);
+    let rim = Rim::new(mesh, field)?;
     let (mut chain, mut dropped) = (Vec::<Boundary>::new(), Vec::new());
     let (mut angles_rad, mut oblique) = (Vec::new(), Vec::new());
     for (k, plane) in planes.iter().enumerate() {

@@ -69,7 +69,8 @@ impl<'a> RulingEnds<'a> {
         };
         let (mut last, mut direction, mut met) = (on_mesh, direction, None);
         let mut before = side(on_mesh).0;
-        let follow = self.tracer.follow(at, Sense::Forward, LONGEST * distance, |from, to| {
+        let follow = self.tracer.follow(at, Sense::Forward, LONGEST * distance, |from, followed| {
+            let to = followed.position;
             let (now, _) = side(to);
             if before < 0.0 && now >= 0.0 {
                 met = Some(from.lerp(to, before / (before - now)));

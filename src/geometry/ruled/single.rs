@@ -122,6 +122,7 @@ pub fn tilt(strip: &Strip, axis: DVec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::ruled::coverage::NearestStrip;
     use crate::mesh::reference::{ParametricSurface, SurfaceJet};
 
     fn on(_: &Progress) -> ControlFlow<()> {
@@ -168,7 +169,7 @@ mod tests {
             foot.normal.dot(*p - foot.point).abs()
         };
         let deviation = strip.mesh(201, 9).unwrap().points.iter().map(there).fold(0.0, f64::max);
-        let back = strip.surface().unwrap();
+        let back = NearestStrip::new(std::slice::from_ref(strip)).unwrap();
         let back = cover.iter().map(|p| back.nearest(*p).point.distance(*p)).fold(0.0, f64::max);
         let size = surface.diagonal();
         assert!(deviation <= 1e-5 * size && back <= 1e-5 * size, "{deviation} {back} {size}");

@@ -4,11 +4,8 @@ use glam::DVec3;
 
 use crate::error::{Error, Result};
 use crate::mesh::curve::{BSpline, CubicBasis};
-use crate::mesh::reference::{ParametricSurface, SurfaceJet};
+use crate::mesh::reference::SurfaceJet;
 use crate::mesh::{Mesh, patterns};
-
-/// Samples in each span when the nearest point of a strip is looked for: Newton's method goes on from them.
-const SAMPLES_PER_SPAN: usize = 4;
 
 /// The points and weights of Gauss's rule of 4 points over the interval from 0 to 1, exact for polynomials of degree 7.
 pub(super) const GAUSS: [(f64, f64); 4] = [
@@ -108,13 +105,10 @@ impl Strip {
         (0..self.basis().spans()).map(in_span).sum()
     }
 
-    /// The strip ready to be asked for its nearest point, as a surface over `(u, v)`.
-    ///
-    /// # Errors
-    /// All control points are one.
-    pub fn surface(&self) -> Result<ParametricSurface<impl Fn(f64, f64) -> SurfaceJet + Sync + '_>> {
-        let columns = SAMPLES_PER_SPAN * self.basis().spans() + 1;
-        ParametricSurface::new([[0.0, self.length_u()], [0.0, 1.0]], [columns, 3], |u, v| self.at(u, v))
+    /// Whether all control points are one.
+    pub(super) fn is_point(&self) -> bool {
+        let first = self.control(0)[0];
+        [0, 1].iter().all(|&side| self.control(side).iter().all(|point| *point == first))
     }
 }
 
@@ -122,7 +116,7 @@ impl Strip {
 mod tests {
     use super::*;
     use crate::error::Status;
-    use crate::mesh::ReferenceSurface;
+    use crate::geometry::ruled::coverage::NearestStrip;
 
     /// The saddle z = xy over [−1, 1]² with straight rulings: control points of a line at its Greville abscissae.
     fn saddle(count: usize) -> Strip {
@@ -146,8 +140,8 @@ mod tests {
                 let [a, b] = strip.ruling(u * strip.length_u());
                 assert!(a.lerp(b, v).distance(jet.point) < 1e-14);
             }
-            let foot =
-                strip.surface().unwrap().nearest(DVec3::new(0.3, -0.2, -0.06) + 0.2 * DVec3::new(0.2, -0.3, 1.0));
+            let search = NearestStrip::new(std::slice::from_ref(&strip)).unwrap();
+            let foot = search.nearest(DVec3::new(0.3, -0.2, -0.06) + 0.2 * DVec3::new(0.2, -0.3, 1.0));
             assert!(foot.point.distance(DVec3::new(0.3, -0.2, -0.06)) < 1e-14);
         }
         let moments = [1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 5.0, 1.0 / 6.0, 1.0 / 7.0, 1.0 / 8.0];

@@ -138,6 +138,37 @@ pub(super) struct Sample {
     is_beyond: bool,
 }
 
+/// A boundary, the boundary that it is to be near to, and the parameters at which it is.
+#[derive(Clone, Debug)]
+struct Facing {
+    own: (usize, usize),
+    other: (usize, usize),
+    parameters: Vec<f64>,
+}
+
+impl Facing {
+    /// Both ways of all joints; of partial ones where strips start beside each other.
+    fn all(joints: &Joints, strips: &[Strip], layout: &Layout, numbers: &[usize], beside: f64) -> Result<Vec<Self>> {
+        let pairs = joints.pairs.iter().filter(|_| !joints.is_shared).map(|&pair| (pair, false));
+        let mut all = Vec::new();
+        for ([first, second], is_partial) in pairs.chain(joints.partial.iter().map(|&pair| (pair, true))) {
+            for (own, other) in [((first, 1), (second, 0)), ((second, 0), (first, 1))] {
+                let number = numbers[own.0];
+                let mut parameters: Vec<f64> = (0..number).map(|k| parameter(layout.basis(own.0), number, k)).collect();
+                if is_partial {
+                    let search = NearestOnCurve::new(strips[other.0].boundary(other.1))?;
+                    parameters.retain(|&u| {
+                        let foot = search.nearest(strips[own.0].ruling(u)[own.1]);
+                        foot.end.is_none() || foot.cosine.abs() <= CORNER || foot.distance <= beside
+                    });
+                }
+                all.push(Self { own, other, parameters });
+            }
+        }
+        Ok(all)
+    }
+}
+
 /// What is minimised, as a function of the unknown points.
 pub(super) struct Terms<'a> {
     aim: Aim<'a>,
@@ -146,7 +177,7 @@ pub(super) struct Terms<'a> {
     /// The diagonal of the reference surface.
     pub(super) size: f64,
     samples: Vec<Sample>,
-    samples_per_boundary: Vec<usize>,
+    facing: Vec<Facing>,
     start: Vec<DVec3>,
     pub(super) form: Form,
 }
@@ -208,7 +239,8 @@ impl<'a> Terms<'a> {
             sample.is_beyond = is_beyond;
         }
         let form = thin_plate::form(&layout, weights.thin_plate * scale, weights.proximal * scale);
-        Ok(Self { aim, layout, weights, size, samples, samples_per_boundary, start, form })
+        let facing = Facing::all(aim.joints, &strips, &layout, &samples_per_boundary, BEYOND * size)?;
+        Ok(Self { aim, layout, weights, size, samples, facing, start, form })
     }
 
     /// The ways of the points from the start.
@@ -272,27 +304,20 @@ impl<'a> Terms<'a> {
 
     /// The pulls between neighbours, and the distances.
     fn gaps(&self, strips: &[Strip]) -> Option<Vec<(Pull, f64)>> {
-        if self.aim.joints.is_shared {
-            return Some(Vec::new());
-        }
-        let number = |strip: usize| self.samples_per_boundary[strip];
-        let total: usize = self.aim.joints.pairs.iter().flatten().map(|&strip| number(strip)).sum();
+        let total: usize = self.facing.iter().map(|facing| facing.parameters.len()).sum();
         let share = self.weights.gap / (self.size * self.size * total.max(1) as f64);
         let mut found = Vec::with_capacity(total);
-        for &[first, second] in &self.aim.joints.pairs {
-            for ((strip, side), (other, other_side)) in [((first, 1), (second, 0)), ((second, 0), (first, 1))] {
-                let search = NearestOnCurve::new(strips[other].boundary(other_side)).ok()?;
-                for k in 0..number(strip) {
-                    let u = parameter(self.layout.basis(strip), number(strip), k);
-                    let here = self.layout.weights(strip, u, side as f64);
-                    let point = strips[strip].ruling(u)[side];
-                    let foot = search.nearest(point);
-                    let there = self.layout.weights(other, foot.parameter, other_side as f64);
-                    let is_corner = foot.end.is_some() && foot.cosine.abs() > CORNER;
-                    let directions = if is_corner { DMat3::IDENTITY } else { across(foot.tangent) };
-                    let pull = Pull::new(difference(here, there), share, point - foot.point, directions);
-                    found.push((pull, foot.distance));
-                }
+        for Facing { own: (strip, side), other: (other, other_side), parameters } in &self.facing {
+            let search = NearestOnCurve::new(strips[*other].boundary(*other_side)).ok()?;
+            for &u in parameters {
+                let here = self.layout.weights(*strip, u, *side as f64);
+                let point = strips[*strip].ruling(u)[*side];
+                let foot = search.nearest(point);
+                let there = self.layout.weights(*other, foot.parameter, *other_side as f64);
+                let is_corner = foot.end.is_some() && foot.cosine.abs() > CORNER;
+                let directions = if is_corner { DMat3::IDENTITY } else { across(foot.tangent) };
+                let pull = Pull::new(difference(here, there), share, point - foot.point, directions);
+                found.push((pull, foot.distance));
             }
         }
         Some(found)

@@ -142,8 +142,8 @@ impl<'a> Tracer<'a> {
         Ok(Trace { positions, points, lengths, end: end.end })
     }
 
-    /// Follows the curve from `start` for `length` model units at most. `step` is called with both ends of every step, and can
-    /// end the curve there. Nothing is allocated.
+    /// Follows the curve from `start` for `length` model units at most. `step` is called with where a step began and with where
+    /// the curve then is, after every step, and can end the curve there. Nothing is allocated.
     ///
     /// # Errors
     /// `start` is no point of the mesh, or `length` is not above 0 or not finite.
@@ -152,10 +152,10 @@ impl<'a> Tracer<'a> {
         start: SurfacePoint,
         sense: Sense,
         length: f64,
-        mut step: impl FnMut(DVec3, DVec3) -> ControlFlow<()>,
+        mut step: impl FnMut(DVec3, &Followed) -> ControlFlow<()>,
     ) -> Result<Followed> {
         self.check(start, length)?;
-        Ok(self.steps(start, sense, length, |from, followed| step(from, followed.position)))
+        Ok(self.steps(start, sense, length, &mut step))
     }
 
     fn check(&self, start: SurfacePoint, length: f64) -> Result<()> {

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::*;
 use crate::error::Status;
+use crate::geometry::ruled::coverage::NearestStrip;
 use crate::geometry::ruled::start::{Rulings, StartOptions, start};
 use crate::geometry::ruled::system::{flat, gradient};
 use crate::mesh::curve::{CubicBasis, End};
@@ -61,9 +62,8 @@ fn deviations(strips: &[Strip], surface: &dyn ReferenceSurface, samples: &[DVec3
     let of_strip = |strip: &Strip| strip.mesh(61, 9).unwrap().points;
     let feet = strips.iter().flat_map(of_strip).map(|p| (p, surface.nearest(p)));
     let there = feet.filter(|(_, foot)| foot.overhang < 1e-9).map(|(p, foot)| p.distance(foot.point));
-    let surfaces: Vec<_> = strips.iter().map(|strip| strip.surface().unwrap()).collect();
-    let back =
-        samples.iter().map(|&p| surfaces.iter().map(|s| s.nearest(p).point.distance(p)).fold(f64::INFINITY, f64::min));
+    let search = NearestStrip::new(strips).unwrap();
+    let back = samples.iter().map(|&p| search.nearest(p).point.distance(p));
     [there.fold(0.0, f64::max), back.fold(0.0, f64::max)]
 }
 
@@ -76,7 +76,7 @@ fn falls(found: &Optimised) -> bool {
 }
 
 /// Nothing that holds else that holds strips back.
-static NO_JOINTS: Joints = Joints { pairs: Vec::new(), is_shared: false };
+static NO_JOINTS: Joints = Joints { pairs: Vec::new(), is_shared: false, partial: Vec::new() };
 
 const BARE: Options = Options {
     weights: Weights { proximity: 1.0, beyond: 1e-2, gap: 1.0, coverage: 0.0, thin_plate: 0.0, proximal: 0.0 },

@@ -147,7 +147,8 @@ fn a_curve_goes_around_a_tube_as_long_as_asked() {
     assert!(trace.end == End::Steps && trace.positions.len() == 8);
     let mut last = mesh.position(start);
     let mut count = 0;
-    let stopped = tracer.follow(start, Sense::Forward, length, |from, to| {
+    let stopped = tracer.follow(start, Sense::Forward, length, |from, followed| {
+        let to = followed.position;
         assert_eq!(from, last);
         (last, count) = (to, count + 1);
         if count == 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

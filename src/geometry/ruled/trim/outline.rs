@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::Contour;
-use crate::error::Result;
+use crate::error::{Error, Result, Status};
 use crate::geometry::ruled::Strip;
+use crate::geometry::ruled::coverage::NearestStrip;
 use crate::mesh::TriangleMesh;
 
 /// An edge is halved so often at most: where its nearest points jump, no halving helps;
@@ -19,8 +20,9 @@ const PROBE: f64 = 0.293;
 
 /// The loops as closed polygons of parameters `(u, v)`; their even-odd parity is that of the loops' nearest points.
 pub(super) fn outlines(strip: &Strip, mesh: &TriangleMesh, tolerance: f64) -> Result<Vec<Contour>> {
-    let surface = strip.surface()?;
-    let projection = Projection { strip, locate: |point| surface.nearest_parameters(point), tolerance };
+    let none = || Error::new(Status::Degenerate, "expected a strip of a finite size above 0").at("strip");
+    let search = NearestStrip::new(std::slice::from_ref(strip)).filter(|_| !strip.is_point()).ok_or_else(none)?;
+    let projection = Projection { strip, locate: |point| search.nearest(point).parameters, tolerance };
     let points = |boundary: &Vec<u32>| boundary.iter().map(|&i| mesh.points()[i as usize]).collect::<Vec<_>>();
     Ok(mesh.boundary().iter().flat_map(|boundary| projection.outline(&points(boundary))).collect())
 }
