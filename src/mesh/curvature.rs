@@ -3,7 +3,7 @@
 //! In a frame `(e1, e2, n)` at a point the surface is a height over its tangent plane. To the neighbours is fitted the jet
 //!
 //! ```text
-//! z(x, y) = g1 x + g2 y + ½ a x² + b x y + ½ c y² + four cubic terms,
+//! z(x, y) = g1 x + g2 y + ½ a x² + b x y + ½ c y² + four terms of degree 3 + five of degree 4,
 //! ```
 //!
 //! which goes through the point itself (Cazals and Pouget 2005, "Estimating differential quantities using polynomial fitting of
@@ -12,8 +12,10 @@
 //! surface, `g = 0` and `[[a, b], [b, c]]` is the second fundamental form. The normal is not known to begin with: the frame is
 //! turned by the slope found, `n ← unit(n − g1 e1 − g2 e2)`, and the jet fitted anew, three times in all.
 //!
-//! Neighbours are gathered ring by ring. With 18 of them curvatures converge, in second order in the edges, at the boundary too,
-//! where all neighbours are on one side; with 12 they were found to stay off by a tenth and more there at any fineness.
+//! Neighbours are gathered ring by ring. With 30 of them asymptotic directions were found to converge in third order in the edges at
+//! least, at the boundary too, where all neighbours are on one side; with 24 they did not everywhere there. Jets of degree 3, to 18
+//! neighbours, converge in second order: on a catenoid of 41 by 41 points directions were off by 1.7e-3 inside and 7.9e-3 at the
+//! boundary, those of degree 4 by 1.0e-4 and 8.8e-4.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -25,9 +27,13 @@ use crate::linalg::householder::{solve, triangularise};
 /// How often the jet is fitted, each time over the tangent plane of the fit before.
 const FITS: usize = 3;
 
-/// Terms of the jet without cubic ones, and with them.
+/// Terms of the jet of degree 2, 3 and 4.
 const QUADRATIC: usize = 5;
 const CUBIC: usize = 9;
+const QUARTIC: usize = 14;
+
+/// With fewer neighbours than this jets are of degree 3: at the boundary those of degree 4 would be off by any angle.
+const QUARTIC_NEIGHBOURS: usize = 28;
 
 /// A term counts as told apart by the neighbours where, of its column, more than this is left beside the columns before it.
 /// Noise in the heights comes out larger by the reciprocal.
@@ -40,13 +46,14 @@ const MOST_NEIGHBOURS: usize = 96;
 /// How the jets are fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Rings of neighbours are added until there are so many, 5 to 96. Below 9 there are no cubic terms.
+    /// Rings of neighbours are added until there are so many, 5 to 96; 30 by default. From 28 on jets are of degree 4, from 9 on of
+    /// degree 3, below of degree 2.
     pub least_neighbours: usize,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { least_neighbours: 18 }
+        Self { least_neighbours: 30 }
     }
 }
 
@@ -54,8 +61,11 @@ impl Default for Options {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fit {
     /// All of it.
+    Quartic,
+    /// The neighbours are few or do not tell terms of degree 4 apart: they were left out, and curvatures are of second order in the
+    /// edges.
     Cubic,
-    /// The neighbours do not tell cubic terms apart: they were left out, and curvatures are of first order in the edges.
+    /// The neighbours do not tell terms of degree 3 apart either: curvatures are of first order in the edges.
     Quadratic,
     /// The neighbours do not determine curvatures: those given are 0. The normal is that of the triangles.
     Degenerate,
@@ -113,9 +123,9 @@ pub fn curvatures(mesh: &TriangleMesh, options: &Options) -> Result<Vec<Curvatur
     Ok((0..count).into_par_iter().with_min_len(count / 64 + 256).map_init(scratch, work).collect())
 }
 
-/// One row of the least squares problem: the terms of the jet at a neighbour, the cubic ones last so that the leading ones can be
+/// One row of the least squares problem: the terms of the jet at a neighbour, by degree so that the leading ones can be
 /// fitted alone, then its height; all times its weight's root.
-type Row = [f64; CUBIC + 1];
+type Row = [f64; QUARTIC + 1];
 
 #[derive(Default)]
 struct Scratch {
@@ -197,17 +207,25 @@ impl Scratch {
         self.rows.clear();
         self.rows.extend(self.sides.iter().map(|&(side, w)| {
             let (x, y, z) = (side.dot(e1), side.dot(e2), side.dot(normal));
-            let terms = [x, y, 0.5 * x * x, x * y, 0.5 * y * y, x * x * x, x * x * y, x * y * y, y * y * y, z];
-            terms.map(|term| w * term)
+            let (xx, xy, yy) = (x * x, x * y, y * y);
+            let cubic = [x * xx, xx * y, x * yy, y * yy];
+            let [a, b, c, d] = cubic;
+            [x, y, 0.5 * xx, xy, 0.5 * yy, a, b, c, d, xx * xx, xx * xy, xx * yy, xy * yy, yy * yy, z]
+                .map(|term| w * term)
         }));
         let rank = triangularise(&mut self.rows, INDEPENDENT);
         let terms = match rank {
-            CUBIC => CUBIC,
+            QUARTIC if self.sides.len() >= QUARTIC_NEIGHBOURS => QUARTIC,
+            CUBIC.. => CUBIC,
             QUADRATIC.. => QUADRATIC,
             _ => return None,
         };
         let [g1, g2, a, b, c, ..] = solve(&self.rows, terms);
-        let fit = if terms == CUBIC { Fit::Cubic } else { Fit::Quadratic };
+        let fit = match terms {
+            QUARTIC => Fit::Quartic,
+            CUBIC => Fit::Cubic,
+            _ => Fit::Quadratic,
+        };
         Some(Jet { slope: [g1, g2], second: [a, b, c], fit })
     }
 }
@@ -248,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn the_saddle_has_its_gaussian_curvature_to_second_order() {
+    fn the_saddle_has_its_curvatures_to_third_order() {
         // z = xy: K = −1/(1 + x² + y²)², H = −xy/(1 + x² + y²)^(3/2) for the normal (−y, −x, 1).
         let error = |n: usize| {
             let mesh = triangles(&height_field(n, n, [-1.0, 1.0], [-1.0, 1.0], |x, y| x * y).unwrap());
@@ -257,15 +275,26 @@ mod tests {
                 let mean = 0.5 * (c.principal[0] + c.principal[1]);
                 let normal = DVec3::new(-p.y, -p.x, 1.0) / w.sqrt();
                 let apart = [c.gaussian() + 1.0 / (w * w), mean + p.x * p.y / w.powf(1.5), c.normal.distance(normal)];
-                assert_eq!(c.fit, Fit::Cubic);
+                assert_eq!(c.fit, Fit::Quartic);
                 apart.into_iter().fold(0.0, |worst, apart| apart.abs().max(worst))
             })
         };
         let errors = [11, 21, 41].map(error);
-        assert!(errors[2][0] < 2e-3 && errors[2][1] < 1e-2, "{errors:?}");
+        assert!(errors[2][0] < 5e-4 && errors[2][1] < 2.5e-3, "{errors:?}");
         for (coarse, fine) in [(0, 1), (1, 2)] {
-            assert!((0..2).all(|k| errors[coarse][k] / errors[fine][k] > 3.0), "{errors:?}");
+            assert!((0..2).all(|k| errors[coarse][k] / errors[fine][k] > 6.0), "{errors:?}");
         }
+        // With fewer neighbours jets are of degree 3, and of second order.
+        let few = |n: usize| {
+            let mesh = triangles(&height_field(n, n, [-1.0, 1.0], [-1.0, 1.0], |x, y| x * y).unwrap());
+            let found = curvatures(&mesh, &Options { least_neighbours: 18 }).unwrap();
+            let inside = (0..mesh.points().len()).filter(|&i| found[i].fit == Fit::Cubic).map(|i| {
+                let p = mesh.points()[i];
+                (found[i].gaussian() + 1.0 / (1.0 + p.x * p.x + p.y * p.y).powi(2)).abs()
+            });
+            inside.fold(0.0, f64::max)
+        };
+        assert!(few(41) < 1e-2 && few(21) / few(41) > 3.0, "{} {}", few(21), few(41));
     }
 
     #[test]

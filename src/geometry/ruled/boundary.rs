@@ -296,7 +296,7 @@ impl<'a> Rim<'a> {
             let reach = boundary.reach(end == 1, self.mean_edge);
             let Some(reach) = reach.filter(|_| self.is_extended(boundary, end)) else { continue };
             let asked = beside[end].iter().map(|stretch| self.asked(reach, stretch)[0]).fold(0.0, f64::max);
-            let by = (1.0 + MARGIN) * asked + LEAST_EXTENSION * self.mean_edge;
+            let by = (1.0 + MARGIN) * asked.min(self.mesh.diagonal()) + LEAST_EXTENSION * self.mean_edge;
             boundary.extend(end == 1, by, self.mean_edge);
         }
     }
