@@ -38,6 +38,9 @@ const NO_DECREASE: f64 = 1e-14;
 /// A value below this, of squares in units of the reference surface's size, is round-off of coordinates.
 const NOTHING: f64 = 1e-31;
 
+/// Over so many iterations what is minimised must fall by the root of the tolerance.
+const FLAT: usize = 3;
+
 /// What is optimised.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
@@ -72,8 +75,8 @@ pub struct Options {
     pub samples: [usize; 2],
     /// Iterations at most.
     pub max_iterations: usize,
-    /// Stop where no control point moves by more than this multiple of the reference surface's diagonal in an iteration, or where
-    /// what is minimised falls by less than this part of itself; 0 or more.
+    /// Stop where no control point moves by more than this multiple of the reference surface's diagonal in an iteration, where what is
+    /// minimised falls by less than this part of itself, or by less than the root of this part in three iterations; 0 or more.
     pub tolerance: f64,
 }
 
@@ -331,8 +334,12 @@ impl Run<'_> {
             let is_small = moved <= tolerance * self.terms.size || decrease <= tolerance * state.value;
             state = next;
             history.push(iteration(&state, promised, taken, moved));
-            // A step that was cut is small for that.
-            if is_small && taken == 1.0 {
+            // A step that was cut is small for that. What falls slowly for several iterations is the sliding of strips along the
+            // surface: deviations then no longer change.
+            let before = history.len().checked_sub(FLAT + 1).map(|k| history[k].value);
+            let before = before.filter(|_| !self.options.bounds.is_any());
+            let is_flat = before.is_some_and(|before| before - state.value <= tolerance.sqrt() * before);
+            if (is_small && taken == 1.0) || (is_flat && tolerance > 0.0) {
                 break Stop::Converged;
             }
         };

@@ -16,6 +16,9 @@ const OFF_SURFACE: f64 = 1e-6;
 /// A curve is followed for so many times the distance to the next boundary at most.
 const LONGEST: f64 = 4.0;
 
+/// Beyond its ends a boundary goes on straight for this part of its length.
+const BEYOND: f64 = 0.25;
+
 /// How often the straight continuation of a curve is corrected: each time the distance left falls by the sine of the angle between
 /// the curve and the boundary's normal.
 const CORRECTIONS: usize = 8;
@@ -35,7 +38,14 @@ impl<'a> RulingEnds<'a> {
     pub fn new(reference: &'a ReferenceMesh<'a>, field: &'a Field, boundaries: &[&Boundary]) -> Result<Self> {
         let polyline = |boundary: &&Boundary| {
             let mut points = boundary.points.clone();
-            points.extend(boundary.is_closed.then(|| boundary.points[0]));
+            match points[..] {
+                [a, b, .., y, z] if !boundary.is_closed => {
+                    let far = BEYOND * boundary.length();
+                    points.insert(0, a + far * (a - b).normalize_or_zero());
+                    points.push(z + far * (z - y).normalize_or_zero());
+                }
+                _ => points.extend(boundary.is_closed.then(|| boundary.points[0])),
+            }
             Ok((ClosestPoints::of_polyline(&points, false)?, points))
         };
         let mesh = reference.mesh();

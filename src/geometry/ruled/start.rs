@@ -19,14 +19,20 @@ const RULINGS_PER_SPAN: usize = 4;
 /// than that is what a trace on a coarse mesh is wrong by, and is mended.
 const MOST_BACKWARD: f64 = 0.2;
 
+/// Beyond its ends a boundary goes on for this part of its length at most,
+const MOST_BEYOND: f64 = 0.25;
+
+/// along the chord over this part of it.
+const CHORD: f64 = 1e-3;
+
 /// Where the rulings of a strip end on its second boundary.
 #[derive(Clone, Copy)]
 pub enum Rulings<'a> {
     /// At the same part of its length as on the first.
     Proportional,
     /// Where this function says, given the strip and a point of its first boundary: where the asymptotic curve from that point
-    /// meets the second boundary (of what it returns, the nearest point of the boundary is taken). Where it has no answer, at the
-    /// nearest point.
+    /// meets the second boundary (of what it returns, the nearest point of the boundary is taken; where that is an end, the boundary
+    /// goes on straight). Where it has no answer, at the nearest point.
     Traced(&'a (dyn Fn(usize, DVec3) -> Option<DVec3> + Sync)),
 }
 
@@ -132,7 +138,7 @@ fn opposite(strip: usize, first: &BSpline, [from, to]: [&Polyline; 2], rulings: 
             let end = |&parameter: &f64| {
                 let point = from.at(from.nearest(first.point(parameter)));
                 let hit = trace(strip, point).filter(|hit| hit.is_finite());
-                (to.nearest(hit.unwrap_or(point)), hit.is_none())
+                (hit.map_or_else(|| to.nearest(point), |hit| along_beyond(to, hit)), hit.is_none())
             };
             parameters.par_iter().map(end).collect()
         }
@@ -169,9 +175,38 @@ fn opposite(strip: usize, first: &BSpline, [from, to]: [&Polyline; 2], rulings: 
         along.iter_mut().for_each(|along| *along = along.min(once));
     }
     let moved = along.iter().zip(&before).filter(|(after, before)| after != before).count();
-    let points: Vec<DVec3> = along.iter().map(|along| to.at(sign * along)).collect();
+    let points: Vec<DVec3> = along.iter().map(|along| at_beyond(to, sign * along)).collect();
     let curve = fit(basis, &parameters, &points)?;
     Ok(Opposite { curve, missed: ends.iter().filter(|end| end.1).count(), moved })
+}
+
+/// The end of an open polyline, 0 or 1, and the unit tangent outward there.
+fn end_of(polyline: &Polyline, end: usize) -> (DVec3, DVec3) {
+    let (at, inward) = if end == 0 { (0.0, CHORD) } else { (polyline.length(), -CHORD) };
+    let point = polyline.at(at);
+    (point, (point - polyline.at(at + inward * polyline.length())).normalize_or_zero())
+}
+
+/// How far along a polyline its nearest point is; of an open one that goes on straight beyond its ends.
+fn along_beyond(polyline: &Polyline, point: DVec3) -> f64 {
+    let (along, length) = (polyline.nearest(point), polyline.length());
+    if polyline.is_closed() || (along > 0.0 && along < length) {
+        return along;
+    }
+    let end = usize::from(along > 0.0);
+    let (last, outward) = end_of(polyline, end);
+    let beyond = (point - last).dot(outward).clamp(0.0, MOST_BEYOND * length);
+    if end == 0 { -beyond } else { length + beyond }
+}
+
+/// The point so far along a polyline; of an open one also beyond its ends.
+fn at_beyond(polyline: &Polyline, along: f64) -> DVec3 {
+    let inside = along.clamp(0.0, polyline.length());
+    if polyline.is_closed() || inside == along {
+        return polyline.at(along);
+    }
+    let (last, outward) = end_of(polyline, usize::from(along > 0.0));
+    last + (along - inside).abs() * outward
 }
 
 /// The same part of the length on both boundaries, each closed one from the point nearest to the other's; the second one the way

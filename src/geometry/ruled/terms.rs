@@ -147,21 +147,21 @@ struct Facing {
 }
 
 impl Facing {
-    /// Both ways of all joints; of partial ones where strips start beside each other.
+    /// Both ways of all joints, where strips start beside each other: what starts beyond the end of the other boundary is beyond the
+    /// surface, or is another strip's neighbour.
     fn all(joints: &Joints, strips: &[Strip], layout: &Layout, numbers: &[usize], beside: f64) -> Result<Vec<Self>> {
-        let pairs = joints.pairs.iter().filter(|_| !joints.is_shared).map(|&pair| (pair, false));
+        let pairs = joints.pairs.iter().filter(|_| !joints.is_shared);
         let mut all = Vec::new();
-        for ([first, second], is_partial) in pairs.chain(joints.partial.iter().map(|&pair| (pair, true))) {
+        for &[first, second] in pairs.chain(&joints.partial) {
             for (own, other) in [((first, 1), (second, 0)), ((second, 0), (first, 1))] {
                 let number = numbers[own.0];
-                let mut parameters: Vec<f64> = (0..number).map(|k| parameter(layout.basis(own.0), number, k)).collect();
-                if is_partial {
-                    let search = NearestOnCurve::new(strips[other.0].boundary(other.1))?;
-                    parameters.retain(|&u| {
-                        let foot = search.nearest(strips[own.0].ruling(u)[own.1]);
-                        foot.end.is_none() || foot.cosine.abs() <= CORNER || foot.distance <= beside
-                    });
-                }
+                let search = NearestOnCurve::new(strips[other.0].boundary(other.1))?;
+                let is_beside = |&u: &f64| {
+                    let foot = search.nearest(strips[own.0].ruling(u)[own.1]);
+                    foot.end.is_none() || foot.cosine.abs() <= CORNER || foot.distance <= beside
+                };
+                let all_parameters = (0..number).map(|k| parameter(layout.basis(own.0), number, k));
+                let parameters = all_parameters.filter(is_beside).collect();
                 all.push(Self { own, other, parameters });
             }
         }

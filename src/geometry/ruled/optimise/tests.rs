@@ -178,7 +178,7 @@ fn deviation_falls_with_the_third_power_of_the_width_along_asymptotic_curves() {
     let middle = |i: u32| surface.at(0.05 * f64::from(i % 21) - 0.5, 0.08 * f64::from(i / 21) - 0.8).point;
     let cover: Vec<DVec3> = (0..21 * 21).map(middle).collect();
     let mut all = Vec::new();
-    for count in [2_u32, 4, 8] {
+    for count in [2_u32, 4, 8, 16] {
         let ys: Vec<f64> = (0..=count).map(|i| -0.8 + 1.6 * f64::from(i) / f64::from(count)).collect();
         let row = |y: &f64| -> Vec<DVec3> {
             let half = if *y == -0.8 { 0.6 } else { 1.4 };
@@ -198,11 +198,11 @@ fn deviation_falls_with_the_third_power_of_the_width_along_asymptotic_curves() {
         assert!(there.max(back) <= started, "{before:?} {there} {back}");
         all.push([started, there.max(back)]);
     }
-    // Wide strips gain more by being optimised.
-    for (k, least) in [(0, 6.0), (1, 4.5)] {
-        assert!(all.windows(2).all(|pair| pair[0][k] / pair[1][k] >= least), "{all:?}");
+    // Wide strips gain more by being optimised, from two strips to four by a third.
+    for (k, least) in [(0, [6.0; 3]), (1, [5.0, 6.0, 6.0])] {
+        let factors = all.windows(2).map(|pair| pair[0][k] / pair[1][k]);
+        assert!(factors.zip(least).all(|(factor, least)| factor >= least), "{all:?}");
     }
-    assert!(all[0][1] / all[2][1] >= 25.0, "{all:?}");
 }
 
 #[test]

@@ -70,7 +70,9 @@ fn bounds_are_kept_where_they_can_be() {
     let bound = 0.7 * reached;
     let bounds = Bounds { largest_deviation: Some(bound), least_width: None };
     let found = optimise(free, &Options { bounds, ..options }, &mut on).unwrap();
-    assert!(falls(&found) && found.last().largest_deviation <= bound + 1e-8, "{:?}", found.last());
+    // To a ten-millionth of the diagonal.
+    let slack = 1e-7 * surface.diagonal();
+    assert!(falls(&found) && found.last().largest_deviation <= bound + slack, "{:?}", found.last());
     // A narrow strip beside a wide one.
     let strips = rows(&surface, &[-0.8, -0.7, 0.8], 8, 0.0);
     let narrow = Task { strips: &strips, ..free };
