@@ -119,7 +119,7 @@ impl Design {
         self.start.as_ref()
     }
 
-    /// Takes level curves of a function as boundaries; on a surface with holes, of one that may jump by a multiple of the levels'
+    /// Takes level curves of a function as boundaries; on a surface with holes (one with handles is refused, `mesh`), of one that may jump by a multiple of the levels'
     /// distance around each. The edges where the field flips are added to those of `function`.
     ///
     /// # Errors
@@ -134,7 +134,7 @@ impl Design {
     ) -> Result<()> {
         let mut function = function.clone();
         function.flips.extend(&self.flips);
-        let (function, boundaries) = if self.mesh.boundary().len() > 1 {
+        let (function, boundaries) = if has_periods(&self.mesh) {
             let spacing = match levels {
                 Levels::Count(count) => Spacing::Count(*count),
                 Levels::Width(width) => Spacing::Width(*width),
@@ -291,6 +291,11 @@ impl Design {
     }
 }
 
+/// Whether a part of a mesh is no disk: a function whose gradient is given may then jump around its holes or handles.
+fn has_periods(mesh: &TriangleMesh) -> bool {
+    mesh.points().len() + mesh.triangles().len() != mesh.edges().len() + mesh.components().1
+}
+
 /// Boundaries that strips lead from one to the next; a ring has its first again at its end.
 fn chains(strips: &[[usize; 2]]) -> Vec<Vec<usize>> {
     let mut chains: Vec<Vec<usize>> = Vec::new();
@@ -318,6 +323,23 @@ mod tests {
         assert_eq!(chains(&[[0, 1], [1, 2], [3, 4]]), [vec![0, 1, 2], vec![3, 4]]);
         assert_eq!(chains(&[[0, 1], [1, 2], [2, 0]]), [vec![0, 1, 2, 0]]);
         assert!(chains(&[]).is_empty());
+    }
+
+    #[test]
+    fn holes_and_handles_have_periods() {
+        let grid = |closed: [bool; 2]| {
+            let torus = surfaces::torus(3.0, 1.0);
+            let at = |k: usize| torus(0.5 * (k % 12) as f64, 0.5 * (k / 12) as f64).point;
+            crate::mesh::grid::Grid::new((0..144).map(at).collect(), 12, 12, closed).unwrap().mesh()
+        };
+        let mut torn = grid([true, true]);
+        torn.faces.remove(50);
+        let with = |mesh: &Mesh| has_periods(&TriangleMesh::new(mesh).unwrap());
+        assert!(!with(&grid([false, false])) && with(&grid([true, false])) && with(&grid([true, true])));
+        // One boundary, but no disk.
+        assert!(TriangleMesh::new(&torn).unwrap().boundary().len() == 1 && with(&torn));
+        let error = super::super::cuts::cuts(&TriangleMesh::new(&torn).unwrap()).unwrap_err();
+        assert_eq!((error.status(), error.place()), (Status::Infeasible, "mesh"));
     }
 
     #[test]

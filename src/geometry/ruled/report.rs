@@ -98,8 +98,10 @@ pub struct StripReport {
     pub trimmed_area: f64,
     /// Its widths at the rulings of which something is left.
     pub widths: Widths,
-    /// The greatest width over the size of the reference's features there.
+    /// The greatest width over the size of the reference's features there,
     pub width_over_feature: f64,
+    /// and that size, in model units ([`feature_sizes`]); 0 if nothing of the strip is left.
+    pub feature_size: f64,
     /// Whether that is above [`ReportOptions::feature_ratio`]: the strip then cannot follow the reference (Flöry et al. 2012,
     /// figure 11).
     pub is_too_wide: bool,
@@ -199,6 +201,7 @@ fn summed_up(
         trimmed_area: trimmed.area(),
         widths: widths(&sums.widths),
         width_over_feature: sums.width_over_feature,
+        feature_size: sums.feature_size,
         is_too_wide: sums.width_over_feature > options.feature_ratio,
     };
     let strip_reports: Vec<StripReport> = sums.iter().zip(strips.iter().zip(trimmed)).map(strip_report).collect();
@@ -282,6 +285,7 @@ struct StripSums {
     /// A width, the length of middle line that it stands for.
     widths: Vec<(f64, f64)>,
     width_over_feature: f64,
+    feature_size: f64,
 }
 
 impl StripSums {
@@ -296,7 +300,7 @@ impl StripSums {
         let (columns, rows) = (options.samples_along * strip.basis().spans(), options.samples_across - 1);
         // The trapezoid rule: half as much at the ends.
         let weight = |i: usize, last: usize| if i == 0 || i == last { 0.5 } else { 1.0 } / last as f64;
-        let mut sums = Self { distances: Vec::new(), widths: Vec::new(), width_over_feature: 0.0 };
+        let mut sums = Self { distances: Vec::new(), widths: Vec::new(), width_over_feature: 0.0, feature_size: 0.0 };
         for i in 0..=columns {
             let u = strip.length_u() * i as f64 / columns as f64;
             let along = strip.length_u() * weight(i, columns);
@@ -320,7 +324,9 @@ impl StripSums {
             let at = inside.mesh.locate(strip.at(u, 0.5 * (longest[0] + longest[1])).point);
             let corners = inside.mesh.mesh().triangles()[at.triangle as usize];
             let feature = corners.iter().map(|&i| features[i as usize]).fold(f64::INFINITY, f64::min);
-            sums.width_over_feature = sums.width_over_feature.max(width / feature);
+            if width / feature > sums.width_over_feature {
+                (sums.width_over_feature, sums.feature_size) = (width / feature, feature);
+            }
         }
         sums
     }

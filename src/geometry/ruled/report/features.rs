@@ -1,23 +1,25 @@
 //! How large the features of a surface are.
 
 use crate::mesh::TriangleMesh;
+use crate::mesh::curvature::{Fit, Options, curvatures};
 
 /// What is flat has features of this many diagonals.
 const FLAT: f64 = 1e6;
 
-/// The size of a mesh's features at each of its points, in model units: the least radius that its normals show along the edges of
-/// the point. They turn by `|S e|` along a step `e`, with `S` the shape operator, so that it is between the two principal radii, and
-/// `√(−1/K)` where these are opposite. At most a million diagonals, where it is flat.
+/// The size of a mesh's features at each of its points, in model units: the least radius of curvature there, the reciprocal of the
+/// greater of both principal curvatures, from the jets of [`curvatures`]. Where these are not determined, and where the surface is
+/// flat, a million diagonals.
+///
+/// A strip of width `w` leaves a surface of this radius by `w² / 8r` at most, where it runs across that curvature; along asymptotic
+/// curves by much less, but that the surface bends alike all across the strip is then what both rely on.
 pub fn feature_sizes(mesh: &TriangleMesh) -> Vec<f64> {
     let most = FLAT * mesh.diagonal();
-    let mut sizes = vec![most; mesh.points().len()];
-    for [a, b] in mesh.edges().into_iter().map(|ends| ends.map(|i| i as usize)) {
-        let turn = mesh.point_normals()[a].distance(mesh.point_normals()[b]);
-        let size = mesh.points()[a].distance(mesh.points()[b]) / turn;
-        if size.is_finite() {
-            sizes[a] = sizes[a].min(size);
-            sizes[b] = sizes[b].min(size);
-        }
-    }
-    sizes
+    let found = curvatures(mesh, &Options::default()).unwrap_or_default();
+    let size = |i: usize| {
+        let curvature = found.get(i).filter(|curvature| curvature.fit != Fit::Degenerate);
+        let greatest =
+            curvature.map_or(0.0, |curvature| curvature.principal[0].abs().max(curvature.principal[1].abs()));
+        greatest.recip().min(most)
+    };
+    (0..mesh.points().len()).map(size).collect()
 }
