@@ -4,13 +4,13 @@
  *
  * Handles. A ShapeOpSolver* is a small integer (nonzero, below 2^31), not an address: never dereference it. A null
  * handle, one that was deleted, and one that never was a solver's are recognised and refused. Only the low 32 bits
- * count. A ShapeOpCanal* is a handle of a surface, a ShapeOpRuled* of a design of ruled strips, and what is said of solvers
- * here holds for them too.
+ * count. A ShapeOpCanal* is a handle of a surface, a ShapeOpRuled* of a design of ruled strips, and what is said of
+ * solvers here holds for them too.
  *
  * Ownership. Every solver of shapeop_create belongs to the caller, who deletes it with shapeop_delete, and every
  * surface, who deletes it with shapeop_canalDelete, and every design, who deletes it with shapeop_ruledDelete. Arrays
- * belong to the caller: the library copies what it reads and keeps no pointer. Texts belong to the library and are never
- * freed; how long they stay valid is said with each function.
+ * belong to the caller: the library copies what it reads and keeps no pointer. Texts belong to the library and are
+ * never freed; how long they stay valid is said with each function.
  *
  * Arrays. Points are double[3 * n]: x y z of point 0, then of point 1, and so on. Lengths of points are counted in
  * points, all others in entries. An array of length 0 may be null. Results are written only if the call succeeds.
@@ -23,7 +23,8 @@
  * shapeop_solve), with -1 (ids, counts, truths) or with null (handles, texts). In all cases, functions without a result
  * included, shapeop_lastError then says why and shapeop_lastErrorCode gives the code; after a call that succeeded the
  * text is empty and the code SO_SUCCESS. Of calls on surfaces and designs, and of those that take no handle,
- * shapeop_lastError of null tells. Numbers that are not finite are refused where they enter, and none is ever handed out.
+ * shapeop_lastError of null tells. Numbers that are not finite are refused where they enter, and none is ever handed
+ * out.
  *
  * Threads. Any thread may use any solver. A call on a solver that another call is using does not wait: it is refused
  * as busy. Different solvers can be used at the same time. From inside its own progress callback a solver can be read
@@ -4124,8 +4125,8 @@ enum shapeop_err shapeop_ruledSelectFamily(struct ShapeOpRuled *design,
                                            int allow_cut);
 
 /**
- * Writes the triangles of a design's mesh, three points each, if there is room for `capacity` of them, and their number
- * to `count`.
+ * Writes the triangles of a design's mesh, three points each, if there is room for `capacity` of them, and their
+ * number to `count`.
  *
  * # Safety
  * `triangles` is null or writable for `3 * capacity` ints, `count` for one.
@@ -4215,8 +4216,8 @@ enum shapeop_err shapeop_ruledTrace(struct ShapeOpRuled *design,
                                     int *end);
 
 /**
- * Writes the default options for boundaries of a kind (a `shapeop_ruled_levels`) to `options`, whose `struct_size` must
- * be set.
+ * Writes the default options for boundaries of a kind (a `shapeop_ruled_levels`) to `options`, whose `struct_size`
+ * must be set.
  *
  * # Safety
  * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
@@ -4226,11 +4227,11 @@ SHAPEOP_API enum shapeop_err shapeop_ruledDefaultLevelOptions(int kind, struct s
 /**
  * Finds a function that rises along the field and takes level curves of it as strip boundaries, in the order along the
  * field. Which levels, exactly one of three says: `count`, so many, evenly spaced; `width`, as many as fit at this
- * distance, in model units; `values`, these, ascending, `nb_values` of them. The others are 0 or null. On a surface with
- * holes, around which the function jumps by a multiple of the levels' distance, values cannot be given.
+ * distance, in model units; `values`, these, ascending, `nb_values` of them. The others are 0 or null. On a surface
+ * with holes, around which the function jumps by a multiple of the levels' distance, values cannot be given.
  *
- * `options` and `boundaries` are null for the defaults. `progress` may be null; it is called before every iteration, and
- * what ends the call leaves the best so far. Takes back boundaries and strips.
+ * `options` and `boundaries` are null for the defaults. `progress` may be null; it is called before every iteration,
+ * and what ends the call leaves the best so far. Takes back boundaries and strips.
  *
  * # Safety
  * `values` is null or readable for `nb_values` doubles. `options` and `boundaries` are null, or their `struct_size` is
@@ -4356,10 +4357,10 @@ enum shapeop_err shapeop_ruledSetGreatCircleBoundaries(struct ShapeOpRuled *desi
                                                        const struct shapeop_ruled_boundary_options *boundaries);
 
 /**
- * Writes the curves on the mesh along which the field is orthogonal to `axis`, of any length above 0: the points of all
- * behind each other if there is room for `capacity` of them, and the number of points of each to `lengths` if there is
- * room for `curve_capacity` of them; a closed one has its first point again at its end. `count` and `curve_count` tell
- * how many there are.
+ * Writes the curves on the mesh along which the field is orthogonal to `axis`, of any length above 0: the points of
+ * all behind each other if there is room for `capacity` of them, and the number of points of each to `lengths` if
+ * there is room for `curve_capacity` of them; a closed one has its first point again at its end. `count` and
+ * `curve_count` tell how many there are.
  *
  * # Safety
  * `axis` is null or readable for 3 doubles; `points` is null or writable for `3 * capacity` doubles, `lengths` for
@@ -4376,8 +4377,8 @@ enum shapeop_err shapeop_ruledGreatCircle(struct ShapeOpRuled *design,
                                           int *curve_count);
 
 /**
- * Takes curves drawn by hand as strip boundaries, in their order along the field. Their points are moved to the nearest
- * of the mesh, and curves are turned around if need be.
+ * Takes curves drawn by hand as strip boundaries, in their order along the field. Their points are moved to the
+ * nearest of the mesh, and curves are turned around if need be.
  *
  * - `points`: the points of all curves behind each other, `nb_points` in all.
  * - `counts`: the number of points of each curve, `nb_counts` in all.
@@ -4387,8 +4388,8 @@ enum shapeop_err shapeop_ruledGreatCircle(struct ShapeOpRuled *design,
  * Takes back boundaries and strips.
  *
  * # Safety
- * `points` is null or readable for `3 * nb_points` doubles, `counts` and `is_closed` for `nb_counts` ints. `boundaries`
- * is null, or its `struct_size` is set and it is readable for so many bytes.
+ * `points` is null or readable for `3 * nb_points` doubles, `counts` and `is_closed` for `nb_counts` ints.
+ * `boundaries` is null, or its `struct_size` is set and it is readable for so many bytes.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_ruledSetDrawnBoundaries(struct ShapeOpRuled *design,
@@ -4405,12 +4406,13 @@ enum shapeop_err shapeop_ruledSetDrawnBoundaries(struct ShapeOpRuled *design,
 SHAPEOP_API int shapeop_ruledBoundaryCount(struct ShapeOpRuled *design);
 
 /**
- * Writes the points of a boundary if there is room for `capacity` of them, and their number to `count`; to `is_closed` 1
- * if the last point is followed by the first, and to `level` the value of the level function, or the number of the
+ * Writes the points of a boundary if there is room for `capacity` of them, and their number to `count`; to `is_closed`
+ * 1 if the last point is followed by the first, and to `level` the value of the level function, or the number of the
  * plane, the axis or the curve. The last two may be null.
  *
  * # Safety
- * `points` is null or writable for `3 * capacity` doubles, `count` and `is_closed` for one int, `level` for one double.
+ * `points` is null or writable for `3 * capacity` doubles, `count` and `is_closed` for one int, `level` for one
+ * double.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_ruledBoundary(struct ShapeOpRuled *design,
@@ -4504,8 +4506,8 @@ SHAPEOP_API int shapeop_ruledStripCount(struct ShapeOpRuled *design);
 
 /**
  * Writes the pairs of strips that are neighbours, the second boundary of one being the first of the other, if there is
- * room for `capacity` pairs, and their number to `count`; to `is_shared`, which may be null, 1 if neighbours have their
- * common boundary as one.
+ * room for `capacity` pairs, and their number to `count`; to `is_shared`, which may be null, 1 if neighbours have
+ * their common boundary as one.
  *
  * # Safety
  * `pairs` is null or writable for `2 * capacity` ints, `count` and `is_shared` for one.
@@ -4535,9 +4537,9 @@ enum shapeop_err shapeop_ruledControl(struct ShapeOpRuled *design,
                                       int *is_closed);
 
 /**
- * Writes the knots along the boundaries of a strip if there is room for `capacity` of them, and their number to `count`:
- * all of distance 1, those at both ends of an open strip four times. The parameter `u` goes from the fourth, 0, to the
- * fourth from the end.
+ * Writes the knots along the boundaries of a strip if there is room for `capacity` of them, and their number to
+ * `count`: all of distance 1, those at both ends of an open strip four times. The parameter `u` goes from the fourth,
+ * 0, to the fourth from the end.
  *
  * # Safety
  * `knots` is null or writable for `capacity` doubles, `count` for one int.
@@ -4563,27 +4565,25 @@ enum shapeop_err shapeop_ruledSetControl(struct ShapeOpRuled *design,
                                          int count);
 
 /**
- * Takes the strips that a text in JSON states (`shapeop_ruledStripsText`). Where they are as many as before, and open or
- * closed as those, neighbours and conditions stay; otherwise each joins the next.
+ * Takes the strips that a text in JSON states (`shapeop_ruledStripsText`). Where they are as many as before, and open
+ * or closed as those, neighbours and conditions stay; otherwise each joins the next.
  *
  * # Safety
  * `json` is null or ends with a zero.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_ruledSetStripsText(struct ShapeOpRuled *design,
-                                            const char *json);
+SHAPEOP_API enum shapeop_err shapeop_ruledSetStripsText(struct ShapeOpRuled *design, const char *json);
 
 /**
- * The JSON form of the strips (`docs/ruled.schema.json`): degrees, knots and control points; null if it is refused. The
- * text is the calling thread's own, valid until that thread's next call of a `shapeop_ruled...` function that answers
- * with a text.
+ * The JSON form of the strips (`docs/ruled.schema.json`): degrees, knots and control points; null if it is refused.
+ * The text is the calling thread's own, valid until that thread's next call of a `shapeop_ruled...` function that
+ * answers with a text.
  */
 SHAPEOP_API const char *shapeop_ruledStripsText(struct ShapeOpRuled *design);
 
 /**
- * Writes the point of a strip at `u`, from 0 to the last parameter of its boundaries, and `v`, 0 on its first boundary to
- * 1 on its second; the derivatives there by `u` and by `v`, 6 doubles; and the unit normal, their cross product made 1
- * long, or 0 where they are parallel. Each output may be null.
+ * Writes the point of a strip at `u`, from 0 to the last parameter of its boundaries, and `v`, 0 on its first boundary
+ * to 1 on its second; the derivatives there by `u` and by `v`, 6 doubles; and the unit normal, their cross product
+ * made 1 long, or 0 where they are parallel. Each output may be null.
  *
  * # Safety
  * `point` and `normal` are null or writable for 3 doubles, `derivatives` for 6.
@@ -4619,8 +4619,8 @@ enum shapeop_err shapeop_ruledConstrainPlane(struct ShapeOpRuled *design,
 SHAPEOP_API enum shapeop_err shapeop_ruledConstrainCutPlanes(struct ShapeOpRuled *design);
 
 /**
- * Adds the condition that an end of a boundary is at a point: of the first (`side` 0) or second (1) boundary of an open
- * strip its start (`end` 0) or finish (1). `point` is null for where it is now.
+ * Adds the condition that an end of a boundary is at a point: of the first (`side` 0) or second (1) boundary of an
+ * open strip its start (`end` 0) or finish (1). `point` is null for where it is now.
  *
  * # Safety
  * `point` is null or readable for 3 doubles.
@@ -4651,20 +4651,17 @@ enum shapeop_err shapeop_ruledConstrainEndDirection(struct ShapeOpRuled *design,
                                                     const double *direction);
 
 /**
- * Adds the condition that a strip is a conoid: that all its rulings are orthogonal to `axis`, of any length above 0; null
- * for the axis that its rulings are most nearly orthogonal to now.
+ * Adds the condition that a strip is a conoid: that all its rulings are orthogonal to `axis`, of any length above 0;
+ * null for the axis that its rulings are most nearly orthogonal to now.
  *
  * # Safety
  * `axis` is null or readable for 3 doubles.
  */
-SHAPEOP_API
-enum shapeop_err shapeop_ruledConstrainConoid(struct ShapeOpRuled *design,
-                                              int strip,
-                                              const double *axis);
+SHAPEOP_API enum shapeop_err shapeop_ruledConstrainConoid(struct ShapeOpRuled *design, int strip, const double *axis);
 
 /**
- * The number of conditions, or -1. A message about `conditions[k]` means the k-th that was added, from 0, of those that
- * are left.
+ * The number of conditions, or -1. A message about `conditions[k]` means the k-th that was added, from 0, of those
+ * that are left.
  */
 SHAPEOP_API int shapeop_ruledConditionCount(struct ShapeOpRuled *design);
 
@@ -4703,8 +4700,8 @@ enum shapeop_err shapeop_ruledOptimise(struct ShapeOpRuled *design,
 /**
  * Writes the start and each iteration of the last optimisation, 10 numbers each, if there is room for `capacity` of
  * them, and their number to `count`: the value; its terms of proximity, gap, coverage and way; the excess over bounds,
- * in model units; the part of the step that was taken; how far a control point moved at most; the largest deviation and
- * the largest gap, in model units. Refused if strips changed since (`SO_NOT_INITIALISED`).
+ * in model units; the part of the step that was taken; how far a control point moved at most; the largest deviation
+ * and the largest gap, in model units. Refused if strips changed since (`SO_NOT_INITIALISED`).
  *
  * # Safety
  * `rows` is null or writable for `10 * capacity` doubles, `count` for one int.
@@ -4758,8 +4755,8 @@ enum shapeop_err shapeop_ruledJointReport(struct ShapeOpRuled *design,
                                           struct shapeop_ruled_joint_report *report);
 
 /**
- * Writes the strips that the last report calls too wide for the features of the mesh if there is room for `capacity` of
- * them, and their number to `count`.
+ * Writes the strips that the last report calls too wide for the features of the mesh if there is room for `capacity`
+ * of them, and their number to `count`.
  *
  * # Safety
  * `strips` is null or writable for `capacity` ints, `count` for one.
@@ -4767,17 +4764,17 @@ enum shapeop_err shapeop_ruledJointReport(struct ShapeOpRuled *design,
 SHAPEOP_API enum shapeop_err shapeop_ruledTooWide(struct ShapeOpRuled *design, int *strips, int capacity, int *count);
 
 /**
- * The JSON form of the last report, in which angles are in degrees; null if it is refused. The text is valid as long as
- * that of `shapeop_ruledStripsText`.
+ * The JSON form of the last report, in which angles are in degrees; null if it is refused. The text is valid as long
+ * as that of `shapeop_ruledStripsText`.
  */
 SHAPEOP_API const char *shapeop_ruledReportText(struct ShapeOpRuled *design);
 
 /**
- * Writes strips as a mesh of quads whose edges across are rulings: the strip `strip`, or all (`SHAPEOP_RULED_ALL`), with
- * `columns_per_span` columns in each span and `rows` rows of points, 2 or more. Points are written if there is room for
- * `capacity` of them, and their number to `count`; faces, four points each, if there is room for `face_capacity` of
- * them, and their number to `face_count`. `normals`, the unit normals at the points, and `strip_of`, the strip of each
- * face, may be null. Strips share no points.
+ * Writes strips as a mesh of quads whose edges across are rulings: the strip `strip`, or all (`SHAPEOP_RULED_ALL`),
+ * with `columns_per_span` columns in each span and `rows` rows of points, 2 or more. Points are written if there is
+ * room for `capacity` of them, and their number to `count`; faces, four points each, if there is room for
+ * `face_capacity` of them, and their number to `face_count`. `normals`, the unit normals at the points, and
+ * `strip_of`, the strip of each face, may be null. Strips share no points.
  *
  * # Safety
  * `points` and `normals` are null or writable for `3 * capacity` doubles, `faces` for `4 * face_capacity` ints,
@@ -4799,9 +4796,9 @@ enum shapeop_err shapeop_ruledMesh(struct ShapeOpRuled *design,
 
 /**
  * As `shapeop_ruledMesh`, for what is left of strips within the boundary of the design's mesh, as triangles:
- * `columns_per_span` columns in each span, whose edges across are rulings; `faces` has three points each. The line along
- * which strips are cut is at most `tolerance` times the mesh's diagonal, above 0 and at most 0.01, from its boundary.
- * What was trimmed is kept until strips change, so that asking for the numbers first costs little.
+ * `columns_per_span` columns in each span, whose edges across are rulings; `faces` has three points each. The line
+ * along which strips are cut is at most `tolerance` times the mesh's diagonal, above 0 and at most 0.01, from its
+ * boundary. What was trimmed is kept until strips change, so that asking for the numbers first costs little.
  *
  * # Safety
  * `points` and `normals` are null or writable for `3 * capacity` doubles, `faces` for `3 * face_capacity` ints,
@@ -4825,8 +4822,8 @@ enum shapeop_err shapeop_ruledTrimmedMesh(struct ShapeOpRuled *design,
  * Writes rulings of a strip or of all (`SHAPEOP_RULED_ALL`), `rulings` of each, evenly spread over its parameter; with
  * `is_trimmed` 1 what is left of them within the boundary of the design's mesh: several pieces of one ruling, or none.
  * For each piece `ends` has its two points, from the first boundary to the second, `parameters` its parameter `u` and
- * `strip_of` its strip, if there is room for `capacity` pieces; `count` is their number. Each output but `count` may be
- * null.
+ * `strip_of` its strip, if there is room for `capacity` pieces; `count` is their number. Each output but `count` may
+ * be null.
  *
  * # Safety
  * `ends` is null or writable for `6 * capacity` doubles, `parameters` for `capacity`, `strip_of` for `capacity` ints,
@@ -4850,20 +4847,16 @@ enum shapeop_err shapeop_ruledRulings(struct ShapeOpRuled *design,
 SHAPEOP_API const char *shapeop_ruledSurfacesObj(struct ShapeOpRuled *design);
 
 /**
- * Trimmed rulings, `rulings` of each strip, as lines of a Wavefront OBJ file; null if it is refused. The text is valid as
- * long as that of `shapeop_ruledStripsText`.
+ * Trimmed rulings, `rulings` of each strip, as lines of a Wavefront OBJ file; null if it is refused. The text is valid
+ * as long as that of `shapeop_ruledStripsText`.
  */
-SHAPEOP_API
-const char *shapeop_ruledRulingsObj(struct ShapeOpRuled *design,
-                                    int rulings);
+SHAPEOP_API const char *shapeop_ruledRulingsObj(struct ShapeOpRuled *design, int rulings);
 
 /**
- * Trimmed rulings, `rulings` of each strip, as a table of comma-separated values, with their ends and lengths; null if it
- * is refused. The text is valid as long as that of `shapeop_ruledStripsText`.
+ * Trimmed rulings, `rulings` of each strip, as a table of comma-separated values, with their ends and lengths; null if
+ * it is refused. The text is valid as long as that of `shapeop_ruledStripsText`.
  */
-SHAPEOP_API
-const char *shapeop_ruledRulingsCsv(struct ShapeOpRuled *design,
-                                    int rulings);
+SHAPEOP_API const char *shapeop_ruledRulingsCsv(struct ShapeOpRuled *design, int rulings);
 
 /**
  * Writes what zebra stripes show at points of any surface, from -1, the middle of a dark stripe, to 1, the middle of a
@@ -4872,8 +4865,8 @@ const char *shapeop_ruledRulingsCsv(struct ShapeOpRuled *design,
  * continuous, so are stripes; where a surface has a kink they break off.
  *
  * # Safety
- * `points` and `normals` are null or readable for `3 * nb_points` doubles, `eye` and `direction` for 3; `out` is null or
- * writable for `nb_points` doubles.
+ * `points` and `normals` are null or readable for `3 * nb_points` doubles, `eye` and `direction` for 3; `out` is null
+ * or writable for `nb_points` doubles.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_ruledZebra(const double *points,
@@ -4895,8 +4888,9 @@ enum shapeop_err shapeop_ruledZebra(const double *points,
 SHAPEOP_API enum shapeop_err shapeop_ruledDefaultPlankOptions(struct shapeop_ruled_plank_options *options);
 
 /**
- * Writes the unit vector that is most nearly orthogonal to all rulings of a strip, so that the strip rises along it, and
- * the greatest angle of a control ruling to the plane across it, in radians: 0 of a conoidal strip. Either may be null.
+ * Writes the unit vector that is most nearly orthogonal to all rulings of a strip, so that the strip rises along it,
+ * and the greatest angle of a control ruling to the plane across it, in radians: 0 of a conoidal strip. Either may be
+ * null.
  *
  * # Safety
  * `axis` is null or writable for 3 doubles, `deviation` for one.
@@ -4908,14 +4902,14 @@ enum shapeop_err shapeop_ruledStripAxis(struct ShapeOpRuled *design,
                                         double *deviation);
 
 /**
- * Cuts a conoidal strip into planks of constant thickness across `axis`, of any length above 0; null for its own. Writes
- * to `planks`, whose `struct_size` must be set, what there is to say of all, and keeps the rest for
+ * Cuts a conoidal strip into planks of constant thickness across `axis`, of any length above 0; null for its own.
+ * Writes to `planks`, whose `struct_size` must be set, what there is to say of all, and keeps the rest for
  * `shapeop_ruledPlank`, `shapeop_ruledDowels`, `shapeop_ruledPlanksText` and `shapeop_ruledPlanksSvg`. A strip that is
  * not conoidal is refused (`SO_NOT_PLANAR`), as is one that folds back along the axis (`SO_DEGENERATE`).
  *
  * # Safety
- * `options` is null, or its `struct_size` is set and it is readable for so many bytes; `axis` is null or readable for 3
- * doubles; `planks` is null, or its `struct_size` is set and it is writable for so many bytes.
+ * `options` is null, or its `struct_size` is set and it is readable for so many bytes; `axis` is null or readable for
+ * 3 doubles; `planks` is null, or its `struct_size` is set and it is writable for so many bytes.
  */
 SHAPEOP_API
 enum shapeop_err shapeop_ruledCutPlanks(struct ShapeOpRuled *design,
@@ -4925,11 +4919,11 @@ enum shapeop_err shapeop_ruledCutPlanks(struct ShapeOpRuled *design,
                                         struct shapeop_ruled_planks *planks);
 
 /**
- * Writes one of the planks that were cut last to `plank`, whose `struct_size` must be set. Refused if strips changed since
- * (`SO_NOT_INITIALISED`). The other outputs may be null:
+ * Writes one of the planks that were cut last to `plank`, whose `struct_size` must be set. Refused if strips changed
+ * since (`SO_NOT_INITIALISED`). The other outputs may be null:
  *
- * - `frame`: a point of its lower face, the unit vector along the plank, from the strip's first boundary to its second,
- *   and the unit vector across it, 9 doubles. Flat coordinates are along these from the point.
+ * - `frame`: a point of its lower face, the unit vector along the plank, from the strip's first boundary to its
+ *   second, and the unit vector across it, 9 doubles. Flat coordinates are along these from the point.
  * - `outline`: the four corners in flat coordinates, counterclockwise seen against the axis, 8 doubles.
  * - `rulings`: the ends of the ruling in the lower face, then of that in the upper, in flat coordinates, 8 doubles.
  *
@@ -4946,8 +4940,9 @@ enum shapeop_err shapeop_ruledPlank(struct ShapeOpRuled *design,
                                     double *rulings);
 
 /**
- * Writes the points of the strip's first (`side` 0) or second (1) boundary at the cuts between the planks that were cut
- * last, ends included, if there is room for `capacity` of them, and their number to `count`: dowels lie along these.
+ * Writes the points of the strip's first (`side` 0) or second (1) boundary at the cuts between the planks that were
+ * cut last, ends included, if there is room for `capacity` of them, and their number to `count`: dowels lie along
+ * these.
  *
  * # Safety
  * `points` is null or writable for `3 * capacity` doubles, `count` for one int.

@@ -138,10 +138,10 @@ pub unsafe extern "C" fn shapeop_ruledSetGreatCircleBoundaries(
     }))
 }
 
-/// Writes the curves on the mesh along which the field is orthogonal to `axis`, of any length above 0: the points of all
-/// behind each other if there is room for `capacity` of them, and the number of points of each to `lengths` if there is
-/// room for `curve_capacity` of them; a closed one has its first point again at its end. `count` and `curve_count` tell
-/// how many there are.
+/// Writes the curves on the mesh along which the field is orthogonal to `axis`, of any length above 0: the points of
+/// all behind each other if there is room for `capacity` of them, and the number of points of each to `lengths` if
+/// there is room for `curve_capacity` of them; a closed one has its first point again at its end. `count` and
+/// `curve_count` tell how many there are.
 ///
 /// # Safety
 /// `axis` is null or readable for 3 doubles; `points` is null or writable for `3 * capacity` doubles, `lengths` for
@@ -185,8 +185,8 @@ pub unsafe extern "C" fn shapeop_ruledGreatCircle(
     }))
 }
 
-/// Takes curves drawn by hand as strip boundaries, in their order along the field. Their points are moved to the nearest
-/// of the mesh, and curves are turned around if need be.
+/// Takes curves drawn by hand as strip boundaries, in their order along the field. Their points are moved to the
+/// nearest of the mesh, and curves are turned around if need be.
 ///
 /// - `points`: the points of all curves behind each other, `nb_points` in all.
 /// - `counts`: the number of points of each curve, `nb_counts` in all.
@@ -196,8 +196,8 @@ pub unsafe extern "C" fn shapeop_ruledGreatCircle(
 /// Takes back boundaries and strips.
 ///
 /// # Safety
-/// `points` is null or readable for `3 * nb_points` doubles, `counts` and `is_closed` for `nb_counts` ints. `boundaries`
-/// is null, or its `struct_size` is set and it is readable for so many bytes.
+/// `points` is null or readable for `3 * nb_points` doubles, `counts` and `is_closed` for `nb_counts` ints.
+/// `boundaries` is null, or its `struct_size` is set and it is readable for so many bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_ruledSetDrawnBoundaries(
     design: *mut ShapeOpRuled,
@@ -249,12 +249,13 @@ pub extern "C" fn shapeop_ruledBoundaryCount(design: *mut ShapeOpRuled) -> c_int
     number(guard(design, |draft| c_count(draft.design().boundaries().boundaries.len())))
 }
 
-/// Writes the points of a boundary if there is room for `capacity` of them, and their number to `count`; to `is_closed` 1
-/// if the last point is followed by the first, and to `level` the value of the level function, or the number of the
+/// Writes the points of a boundary if there is room for `capacity` of them, and their number to `count`; to `is_closed`
+/// 1 if the last point is followed by the first, and to `level` the value of the level function, or the number of the
 /// plane, the axis or the curve. The last two may be null.
 ///
 /// # Safety
-/// `points` is null or writable for `3 * capacity` doubles, `count` and `is_closed` for one int, `level` for one double.
+/// `points` is null or writable for `3 * capacity` doubles, `count` and `is_closed` for one int, `level` for one
+/// double.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_ruledBoundary(
     design: *mut ShapeOpRuled,

@@ -77,8 +77,8 @@ fn at_end<T: Copy>(all: &[T], end: End) -> T {
     if end == End::Start { all[0] } else { all[all.len() - 1] }
 }
 
-/// Adds the condition that an end of a boundary is at a point: of the first (`side` 0) or second (1) boundary of an open
-/// strip its start (`end` 0) or finish (1). `point` is null for where it is now.
+/// Adds the condition that an end of a boundary is at a point: of the first (`side` 0) or second (1) boundary of an
+/// open strip its start (`end` 0) or finish (1). `point` is null for where it is now.
 ///
 /// # Safety
 /// `point` is null or readable for 3 doubles.
@@ -127,8 +127,8 @@ pub unsafe extern "C" fn shapeop_ruledConstrainEndDirection(
     }))
 }
 
-/// Adds the condition that a strip is a conoid: that all its rulings are orthogonal to `axis`, of any length above 0; null
-/// for the axis that its rulings are most nearly orthogonal to now.
+/// Adds the condition that a strip is a conoid: that all its rulings are orthogonal to `axis`, of any length above 0;
+/// null for the axis that its rulings are most nearly orthogonal to now.
 ///
 /// # Safety
 /// `axis` is null or readable for 3 doubles.
@@ -148,8 +148,8 @@ pub unsafe extern "C" fn shapeop_ruledConstrainConoid(
     }))
 }
 
-/// The number of conditions, or -1. A message about `conditions[k]` means the k-th that was added, from 0, of those that
-/// are left.
+/// The number of conditions, or -1. A message about `conditions[k]` means the k-th that was added, from 0, of those
+/// that are left.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_ruledConditionCount(design: *mut ShapeOpRuled) -> c_int {
     number(guard(design, |draft| c_count(draft.conditions().len())))

@@ -205,8 +205,8 @@ pub unsafe extern "C" fn shapeop_ruledSelectFamily(
     }))
 }
 
-/// Writes the triangles of a design's mesh, three points each, if there is room for `capacity` of them, and their number
-/// to `count`.
+/// Writes the triangles of a design's mesh, three points each, if there is room for `capacity` of them, and their
+/// number to `count`.
 ///
 /// # Safety
 /// `triangles` is null or writable for `3 * capacity` ints, `count` for one.

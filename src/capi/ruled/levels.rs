@@ -147,8 +147,8 @@ const KINDS: [(shapeop_ruled_levels, LevelWeights); 5] = [
     (shapeop_ruled_levels::SO_RULED_LEVELS_CONOIDAL, LevelWeights::CONOIDAL),
 ];
 
-/// Writes the default options for boundaries of a kind (a `shapeop_ruled_levels`) to `options`, whose `struct_size` must
-/// be set.
+/// Writes the default options for boundaries of a kind (a `shapeop_ruled_levels`) to `options`, whose `struct_size`
+/// must be set.
 ///
 /// # Safety
 /// `options` is null, or its `struct_size` is set and it is writable for so many bytes.
@@ -179,8 +179,8 @@ unsafe fn levels(count: c_int, width: f64, values: *const f64, nb_values: c_int)
         (false, false, true) => Ok(Levels::Values(values)),
         _ => {
             let reason = format!(
-                "expected either a count, a width or values, found a count of {count}, a width of {width} and {} values",
-                values.len()
+                "expected one of a count, a width and values, found a count of {count}, a width of {width} and \
+                 {nb_values} values"
             );
             Err(Error::new(Status::InvalidValue, reason).at("count"))
         }
@@ -205,11 +205,11 @@ fn named(error: Error, levels: &Levels) -> Error {
 
 /// Finds a function that rises along the field and takes level curves of it as strip boundaries, in the order along the
 /// field. Which levels, exactly one of three says: `count`, so many, evenly spaced; `width`, as many as fit at this
-/// distance, in model units; `values`, these, ascending, `nb_values` of them. The others are 0 or null. On a surface with
-/// holes, around which the function jumps by a multiple of the levels' distance, values cannot be given.
+/// distance, in model units; `values`, these, ascending, `nb_values` of them. The others are 0 or null. On a surface
+/// with holes, around which the function jumps by a multiple of the levels' distance, values cannot be given.
 ///
-/// `options` and `boundaries` are null for the defaults. `progress` may be null; it is called before every iteration, and
-/// what ends the call leaves the best so far. Takes back boundaries and strips.
+/// `options` and `boundaries` are null for the defaults. `progress` may be null; it is called before every iteration,
+/// and what ends the call leaves the best so far. Takes back boundaries and strips.
 ///
 /// # Safety
 /// `values` is null or readable for `nb_values` doubles. `options` and `boundaries` are null, or their `struct_size` is

@@ -270,8 +270,8 @@ pub unsafe extern "C" fn shapeop_ruledOptimise(
 
 /// Writes the start and each iteration of the last optimisation, 10 numbers each, if there is room for `capacity` of
 /// them, and their number to `count`: the value; its terms of proximity, gap, coverage and way; the excess over bounds,
-/// in model units; the part of the step that was taken; how far a control point moved at most; the largest deviation and
-/// the largest gap, in model units. Refused if strips changed since (`SO_NOT_INITIALISED`).
+/// in model units; the part of the step that was taken; how far a control point moved at most; the largest deviation
+/// and the largest gap, in model units. Refused if strips changed since (`SO_NOT_INITIALISED`).
 ///
 /// # Safety
 /// `rows` is null or writable for `10 * capacity` doubles, `count` for one int.

@@ -73,11 +73,11 @@ unsafe fn tell(mesh: &Mesh, up: &[DVec3], strip_of: &[u32], first: usize, corner
     outputs.write()
 }
 
-/// Writes strips as a mesh of quads whose edges across are rulings: the strip `strip`, or all (`SHAPEOP_RULED_ALL`), with
-/// `columns_per_span` columns in each span and `rows` rows of points, 2 or more. Points are written if there is room for
-/// `capacity` of them, and their number to `count`; faces, four points each, if there is room for `face_capacity` of
-/// them, and their number to `face_count`. `normals`, the unit normals at the points, and `strip_of`, the strip of each
-/// face, may be null. Strips share no points.
+/// Writes strips as a mesh of quads whose edges across are rulings: the strip `strip`, or all (`SHAPEOP_RULED_ALL`),
+/// with `columns_per_span` columns in each span and `rows` rows of points, 2 or more. Points are written if there is
+/// room for `capacity` of them, and their number to `count`; faces, four points each, if there is room for
+/// `face_capacity` of them, and their number to `face_count`. `normals`, the unit normals at the points, and
+/// `strip_of`, the strip of each face, may be null. Strips share no points.
 ///
 /// # Safety
 /// `points` and `normals` are null or writable for `3 * capacity` doubles, `faces` for `4 * face_capacity` ints,
@@ -111,9 +111,9 @@ pub unsafe extern "C" fn shapeop_ruledMesh(
 }
 
 /// As `shapeop_ruledMesh`, for what is left of strips within the boundary of the design's mesh, as triangles:
-/// `columns_per_span` columns in each span, whose edges across are rulings; `faces` has three points each. The line along
-/// which strips are cut is at most `tolerance` times the mesh's diagonal, above 0 and at most 0.01, from its boundary.
-/// What was trimmed is kept until strips change, so that asking for the numbers first costs little.
+/// `columns_per_span` columns in each span, whose edges across are rulings; `faces` has three points each. The line
+/// along which strips are cut is at most `tolerance` times the mesh's diagonal, above 0 and at most 0.01, from its
+/// boundary. What was trimmed is kept until strips change, so that asking for the numbers first costs little.
 ///
 /// # Safety
 /// `points` and `normals` are null or writable for `3 * capacity` doubles, `faces` for `3 * face_capacity` ints,
@@ -165,8 +165,8 @@ fn rulings(draft: &mut Draft, strip: c_int, rulings: c_int, is_trimmed: bool) ->
 /// Writes rulings of a strip or of all (`SHAPEOP_RULED_ALL`), `rulings` of each, evenly spread over its parameter; with
 /// `is_trimmed` 1 what is left of them within the boundary of the design's mesh: several pieces of one ruling, or none.
 /// For each piece `ends` has its two points, from the first boundary to the second, `parameters` its parameter `u` and
-/// `strip_of` its strip, if there is room for `capacity` pieces; `count` is their number. Each output but `count` may be
-/// null.
+/// `strip_of` its strip, if there is room for `capacity` pieces; `count` is their number. Each output but `count` may
+/// be null.
 ///
 /// # Safety
 /// `ends` is null or writable for `6 * capacity` doubles, `parameters` for `capacity`, `strip_of` for `capacity` ints,
@@ -214,15 +214,15 @@ pub extern "C" fn shapeop_ruledSurfacesObj(design: *mut ShapeOpRuled) -> *const 
     shown(design, |draft| Ok(export::surfaces_obj(&draft.design().strips()[range(draft, SHAPEOP_RULED_ALL)?])))
 }
 
-/// Trimmed rulings, `rulings` of each strip, as lines of a Wavefront OBJ file; null if it is refused. The text is valid as
-/// long as that of `shapeop_ruledStripsText`.
+/// Trimmed rulings, `rulings` of each strip, as lines of a Wavefront OBJ file; null if it is refused. The text is valid
+/// as long as that of `shapeop_ruledStripsText`.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_ruledRulingsObj(design: *mut ShapeOpRuled, rulings: c_int) -> *const c_char {
     shown(design, |draft| Ok(export::rulings_obj(&self::rulings(draft, SHAPEOP_RULED_ALL, rulings, true)?)))
 }
 
-/// Trimmed rulings, `rulings` of each strip, as a table of comma-separated values, with their ends and lengths; null if it
-/// is refused. The text is valid as long as that of `shapeop_ruledStripsText`.
+/// Trimmed rulings, `rulings` of each strip, as a table of comma-separated values, with their ends and lengths; null if
+/// it is refused. The text is valid as long as that of `shapeop_ruledStripsText`.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_ruledRulingsCsv(design: *mut ShapeOpRuled, rulings: c_int) -> *const c_char {
     shown(design, |draft| Ok(export::rulings_csv(&self::rulings(draft, SHAPEOP_RULED_ALL, rulings, true)?)))
@@ -234,8 +234,8 @@ pub extern "C" fn shapeop_ruledRulingsCsv(design: *mut ShapeOpRuled, rulings: c_
 /// continuous, so are stripes; where a surface has a kink they break off.
 ///
 /// # Safety
-/// `points` and `normals` are null or readable for `3 * nb_points` doubles, `eye` and `direction` for 3; `out` is null or
-/// writable for `nb_points` doubles.
+/// `points` and `normals` are null or readable for `3 * nb_points` doubles, `eye` and `direction` for 3; `out` is null
+/// or writable for `nb_points` doubles.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_ruledZebra(
     points: *const f64,

@@ -114,8 +114,9 @@ fn default_options() -> shapeop_ruled_plank_options {
     shapeop_ruled_plank_options { struct_size: 0, has_first_cut: 0, thickness, depth, first_cut: 0.0, tolerance }
 }
 
-/// Writes the unit vector that is most nearly orthogonal to all rulings of a strip, so that the strip rises along it, and
-/// the greatest angle of a control ruling to the plane across it, in radians: 0 of a conoidal strip. Either may be null.
+/// Writes the unit vector that is most nearly orthogonal to all rulings of a strip, so that the strip rises along it,
+/// and the greatest angle of a control ruling to the plane across it, in radians: 0 of a conoidal strip. Either may be
+/// null.
 ///
 /// # Safety
 /// `axis` is null or writable for 3 doubles, `deviation` for one.
@@ -138,14 +139,14 @@ pub unsafe extern "C" fn shapeop_ruledStripAxis(
     }))
 }
 
-/// Cuts a conoidal strip into planks of constant thickness across `axis`, of any length above 0; null for its own. Writes
-/// to `planks`, whose `struct_size` must be set, what there is to say of all, and keeps the rest for
+/// Cuts a conoidal strip into planks of constant thickness across `axis`, of any length above 0; null for its own.
+/// Writes to `planks`, whose `struct_size` must be set, what there is to say of all, and keeps the rest for
 /// `shapeop_ruledPlank`, `shapeop_ruledDowels`, `shapeop_ruledPlanksText` and `shapeop_ruledPlanksSvg`. A strip that is
 /// not conoidal is refused (`SO_NOT_PLANAR`), as is one that folds back along the axis (`SO_DEGENERATE`).
 ///
 /// # Safety
-/// `options` is null, or its `struct_size` is set and it is readable for so many bytes; `axis` is null or readable for 3
-/// doubles; `planks` is null, or its `struct_size` is set and it is writable for so many bytes.
+/// `options` is null, or its `struct_size` is set and it is readable for so many bytes; `axis` is null or readable for
+/// 3 doubles; `planks` is null, or its `struct_size` is set and it is writable for so many bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_ruledCutPlanks(
     design: *mut ShapeOpRuled,
@@ -188,11 +189,11 @@ pub unsafe extern "C" fn shapeop_ruledCutPlanks(
     }))
 }
 
-/// Writes one of the planks that were cut last to `plank`, whose `struct_size` must be set. Refused if strips changed since
-/// (`SO_NOT_INITIALISED`). The other outputs may be null:
+/// Writes one of the planks that were cut last to `plank`, whose `struct_size` must be set. Refused if strips changed
+/// since (`SO_NOT_INITIALISED`). The other outputs may be null:
 ///
-/// - `frame`: a point of its lower face, the unit vector along the plank, from the strip's first boundary to its second,
-///   and the unit vector across it, 9 doubles. Flat coordinates are along these from the point.
+/// - `frame`: a point of its lower face, the unit vector along the plank, from the strip's first boundary to its
+///   second, and the unit vector across it, 9 doubles. Flat coordinates are along these from the point.
 /// - `outline`: the four corners in flat coordinates, counterclockwise seen against the axis, 8 doubles.
 /// - `rulings`: the ends of the ruling in the lower face, then of that in the upper, in flat coordinates, 8 doubles.
 ///
@@ -238,8 +239,9 @@ pub unsafe extern "C" fn shapeop_ruledPlank(
     }))
 }
 
-/// Writes the points of the strip's first (`side` 0) or second (1) boundary at the cuts between the planks that were cut
-/// last, ends included, if there is room for `capacity` of them, and their number to `count`: dowels lie along these.
+/// Writes the points of the strip's first (`side` 0) or second (1) boundary at the cuts between the planks that were
+/// cut last, ends included, if there is room for `capacity` of them, and their number to `count`: dowels lie along
+/// these.
 ///
 /// # Safety
 /// `points` is null or writable for `3 * capacity` doubles, `count` for one int.

@@ -324,8 +324,8 @@ pub unsafe extern "C" fn shapeop_ruledJointReport(
     }))
 }
 
-/// Writes the strips that the last report calls too wide for the features of the mesh if there is room for `capacity` of
-/// them, and their number to `count`.
+/// Writes the strips that the last report calls too wide for the features of the mesh if there is room for `capacity`
+/// of them, and their number to `count`.
 ///
 /// # Safety
 /// `strips` is null or writable for `capacity` ints, `count` for one.
@@ -345,8 +345,8 @@ pub unsafe extern "C" fn shapeop_ruledTooWide(
     }))
 }
 
-/// The JSON form of the last report, in which angles are in degrees; null if it is refused. The text is valid as long as
-/// that of `shapeop_ruledStripsText`.
+/// The JSON form of the last report, in which angles are in degrees; null if it is refused. The text is valid as long
+/// as that of `shapeop_ruledStripsText`.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_ruledReportText(design: *mut ShapeOpRuled) -> *const c_char {
     shown(design, |draft| draft.report_json())

@@ -64,8 +64,8 @@ pub extern "C" fn shapeop_ruledStripCount(design: *mut ShapeOpRuled) -> c_int {
 }
 
 /// Writes the pairs of strips that are neighbours, the second boundary of one being the first of the other, if there is
-/// room for `capacity` pairs, and their number to `count`; to `is_shared`, which may be null, 1 if neighbours have their
-/// common boundary as one.
+/// room for `capacity` pairs, and their number to `count`; to `is_shared`, which may be null, 1 if neighbours have
+/// their common boundary as one.
 ///
 /// # Safety
 /// `pairs` is null or writable for `2 * capacity` ints, `count` and `is_shared` for one.
@@ -125,9 +125,9 @@ pub unsafe extern "C" fn shapeop_ruledControl(
     }))
 }
 
-/// Writes the knots along the boundaries of a strip if there is room for `capacity` of them, and their number to `count`:
-/// all of distance 1, those at both ends of an open strip four times. The parameter `u` goes from the fourth, 0, to the
-/// fourth from the end.
+/// Writes the knots along the boundaries of a strip if there is room for `capacity` of them, and their number to
+/// `count`: all of distance 1, those at both ends of an open strip four times. The parameter `u` goes from the fourth,
+/// 0, to the fourth from the end.
 ///
 /// # Safety
 /// `knots` is null or writable for `capacity` doubles, `count` for one int.
@@ -181,8 +181,8 @@ pub unsafe extern "C" fn shapeop_ruledSetControl(
     }))
 }
 
-/// Takes the strips that a text in JSON states (`shapeop_ruledStripsText`). Where they are as many as before, and open or
-/// closed as those, neighbours and conditions stay; otherwise each joins the next.
+/// Takes the strips that a text in JSON states (`shapeop_ruledStripsText`). Where they are as many as before, and open
+/// or closed as those, neighbours and conditions stay; otherwise each joins the next.
 ///
 /// # Safety
 /// `json` is null or ends with a zero.
@@ -195,17 +195,17 @@ pub unsafe extern "C" fn shapeop_ruledSetStripsText(design: *mut ShapeOpRuled, j
     }))
 }
 
-/// The JSON form of the strips (`docs/ruled.schema.json`): degrees, knots and control points; null if it is refused. The
-/// text is the calling thread's own, valid until that thread's next call of a `shapeop_ruled...` function that answers
-/// with a text.
+/// The JSON form of the strips (`docs/ruled.schema.json`): degrees, knots and control points; null if it is refused.
+/// The text is the calling thread's own, valid until that thread's next call of a `shapeop_ruled...` function that
+/// answers with a text.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_ruledStripsText(design: *mut ShapeOpRuled) -> *const c_char {
     shown(design, |draft| Ok(draft.strips_json()))
 }
 
-/// Writes the point of a strip at `u`, from 0 to the last parameter of its boundaries, and `v`, 0 on its first boundary to
-/// 1 on its second; the derivatives there by `u` and by `v`, 6 doubles; and the unit normal, their cross product made 1
-/// long, or 0 where they are parallel. Each output may be null.
+/// Writes the point of a strip at `u`, from 0 to the last parameter of its boundaries, and `v`, 0 on its first boundary
+/// to 1 on its second; the derivatives there by `u` and by `v`, 6 doubles; and the unit normal, their cross product
+/// made 1 long, or 0 where they are parallel. Each output may be null.
 ///
 /// # Safety
 /// `point` and `normal` are null or writable for 3 doubles, `derivatives` for 6.
