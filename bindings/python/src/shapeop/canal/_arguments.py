@@ -14,16 +14,16 @@ from .._library import ArgumentError
 from ._kinds import ProgressFunction, Wraps
 
 __all__ = [
+    "_Grid",
+    "_Watch",
     "_circles",
     "_doubles",
     "_frame",
-    "_Grid",
     "_ints",
     "_of_length",
     "_optional",
     "_truths",
     "_vector",
-    "_Watch",
 ]
 
 

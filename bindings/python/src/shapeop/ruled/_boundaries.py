@@ -38,7 +38,7 @@ def _levels(count: Optional[int], width: Optional[float], values: Optional[Any])
 def _plane(value: Any, name: str) -> list[float]:
     """The normal and the offset: four numbers, or a pair."""
     parts = list(value)
-    if len(parts) == 2:
+    if len(parts) == 2 and hasattr(parts[0], "__len__"):
         parts = [*parts[0], parts[1]]
     if len(parts) != 4:
         raise ArgumentError(f"{name}: expected a normal and an offset, found {_arrays.found(value)}")

@@ -19,9 +19,9 @@ class Design(_Strips):
     """A negatively curved mesh, strip boundaries across its asymptotic curves, and ruled strips between these.
 
     ``mesh``: a mesh of COMPAS, meshio or trimesh, or points together with ``faces``. ``family``: which of the two
-    families of asymptotic curves rulings follow, along ``hint`` on the whole; :meth:`select_family` takes the other. Each
-    step needs those before it and takes back those after it. It is deleted by :meth:`close`, at the end of a ``with``
-    block, or when nothing refers to it any more.
+    families of asymptotic curves rulings follow, along ``hint`` on the whole; :meth:`select_family` takes the other.
+    Each step needs those before it and takes back those after it. It is deleted by :meth:`close`, at the end of a
+    ``with`` block, or when nothing refers to it any more.
 
     >>> xs = [i / 8 - 1 for i in range(17)]
     >>> points = [[x, y, x * y] for y in xs for x in xs]
@@ -177,8 +177,8 @@ def zebra(
 ) -> Any:
     """What zebra stripes show at points of any surface, from -1, dark, to 1, light: reflections of light tubes.
 
-    ``eye`` is a point, or with ``parallel`` the direction in which all eyes look; ``direction`` is that of the tubes, of
-    which ``count`` are around a full turn, turned by ``turn``.
+    ``eye`` is a point, or with ``parallel`` the direction in which all eyes look; ``direction`` is that of the tubes,
+    of which ``count`` are around a full turn, turned by ``turn``.
     """
     blocks = (_arrays.points(points), _arrays.points(normals, "normals"))
     if blocks[0].length != blocks[1].length:

@@ -107,8 +107,10 @@ class Trace(NamedTuple):
 
 
 class Boundary(NamedTuple):
-    """A strip boundary: its points, whether the last is followed by the first, and the level, or the number of its plane,
-    axis or curve."""
+    """A strip boundary, whether its last point is followed by the first, and its level.
+
+    The level is the value of the level function, or the number of the plane, axis or curve.
+    """
 
     points: Any
     is_closed: bool
@@ -147,7 +149,7 @@ class LevelReport:
 
 
 class Started(NamedTuple):
-    """For each strip: rulings that did not meet the second boundary, and rulings that were moved to follow each other."""
+    """For each strip: rulings that did not meet the second boundary, and those moved to follow each other."""
 
     missed: list[int]
     moved: list[int]
@@ -228,8 +230,8 @@ class JointReport:
 class Report:
     """What there is to say of strips.
 
-    ``largest_deviation``: the largest distance of the strips from the mesh; ``largest_uncovered``: of a point of the mesh
-    from the nearest strip; ``coverage``: the area of trimmed strips over that of the mesh.
+    ``largest_deviation``: the largest distance of the strips from the mesh; ``largest_uncovered``: of a point of the
+    mesh from the nearest strip; ``coverage``: the area of trimmed strips over that of the mesh.
     """
 
     largest_deviation: float
@@ -273,9 +275,9 @@ class Plank:
     """A plank: a prism over a flat outline.
 
     ``frame`` has a point of its lower face, the unit vector along it, from the strip's first boundary to its second,
-    and the one across it. The corners of ``outline``, (4, 2), and the ends of the ``rulings`` in its lower and its upper
-    face, (2, 2, 2), are in flat coordinates along these. ``heights`` are along the axis, ``parameters`` those of the
-    rulings.
+    and the one across it. The corners of ``outline``, (4, 2), and the ends of the ``rulings`` in its lower and its
+    upper face, (2, 2, 2), are in flat coordinates along these. ``heights`` are along the axis, ``parameters`` those
+    of the rulings.
     """
 
     heights: tuple[float, float]
