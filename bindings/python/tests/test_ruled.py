@@ -287,8 +287,11 @@ def test_boundaries_of_other_kinds() -> None:
     count = len(design.boundaries)
     assert design.level_report.stop is not ruled.Stop.CANCELLED
     assert float(design.level_history[-1]) <= float(design.level_history[0])
-    design.set_levels(count + 2, overshoots=False, least_length=0)
-    assert len(design.boundaries) == count + 2
+    assert count > 2
+    design.level_boundaries(3, overshoots=False)
+    assert len(design.boundaries) == 3
+    design.set_levels(5, overshoots=False)
+    assert len(design.boundaries) == 5
     found = design.boundary_axis(1)
     assert hypot(*map(float, found.direction)) == pytest.approx(1)
     assert design.critical_points == []
@@ -371,6 +374,32 @@ def test_a_mesh_of_compas_is_taken() -> None:
     points, faces = grid(lambda x, y: x * y, 11)
     design = ruled.Design(structures.Mesh.from_vertices_and_faces(points, faces))
     assert len(design.triangles) == 200
+
+
+def test_a_rhino_file_has_the_strips(tmp_path: Path) -> None:
+    rhino = pytest.importorskip("rhino3dm")
+    design = with_strips()
+    path = tmp_path / "strips.3dm"
+    design.to_3dm(path, unit="millimeters")
+    model: Any = rhino.File3dm.Read(str(path))
+    assert model.Settings.ModelUnitSystem == rhino.UnitSystem.Millimeters
+    assert [thing.Attributes.Name for thing in model.Objects] == [f"strip-{i}" for i in range(4)]
+    for thing, strip in zip(model.Objects, design.strips):
+        # A surface becomes a boundary representation of one face.
+        surface: Any = thing.Geometry if hasattr(thing.Geometry, "PointAt") else thing.Geometry.Surfaces[0]
+        for u, v in ((0.0, 0.0), (1.3, 0.4), (5.0, 1.0)):
+            at = surface.PointAt(u, v)
+            assert dist([at.X, at.Y, at.Z], point_of(strip, u, v)) < 1e-12
+    with pytest.raises(shapeop.ArgumentError, match="unit"):
+        design.to_3dm(path, unit="ells")
+    with pytest.raises(OSError, match="path"):
+        design.to_3dm(tmp_path / "none" / "strips.3dm")
+
+
+def test_a_rhino_file_needs_its_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "rhino3dm", None)
+    with pytest.raises(ImportError, match="pip install rhino3dm"):
+        with_strips().to_3dm(tmp_path / "strips.3dm")
 
 
 def test_the_example_runs(tmp_path: Path) -> None:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Optional
+import os
+from typing import Any, Optional, Union
 
 from .. import _abi, _arrays
 from .._calls import doubles, ints, optional_vector, vector
 from .._library import ArgumentError, check, lib
 from ._field import integers, set_options, struct, told_text
 from ._kinds import Axis, Plank, Planks, Rulings, StripMesh
+from ._rhino import write
 from ._strips import _Strips
 
 _ALL = -1
@@ -93,6 +95,13 @@ class Design(_Strips):
     def surfaces_obj(self) -> str:
         """The strips as B-spline surfaces of a Wavefront OBJ file, which CAD programs read."""
         return told_text(lib.shapeop_ruledSurfacesObj(self._handle))
+
+    def to_3dm(self, path: Union[str, os.PathLike[str]], unit: str = "meters") -> None:
+        """Writes the strips as NURBS surfaces of a Rhino file; it needs the package rhino3dm.
+
+        ``unit`` is what a model unit is, by rhino3dm's name for it.
+        """
+        write(path, self.strips, unit)
 
     def rulings_obj(self, count: int) -> str:
         """Trimmed rulings, ``count`` of each strip, as lines of a Wavefront OBJ file."""
