@@ -262,8 +262,8 @@ pub unsafe extern "C" fn shapeop_ruledDowels(
     }))
 }
 
-/// The JSON form of the planks that were cut last, in which angles are in degrees; null if it is refused. The text is
-/// valid as long as that of `shapeop_ruledStripsText`.
+/// The JSON form of the planks that were cut last (`docs/ruled-planks.schema.json`), in which angles are in degrees;
+/// null if it is refused. The text is valid as long as that of `shapeop_ruledStripsText`.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_ruledPlanksText(design: *mut ShapeOpRuled) -> *const c_char {
     shown(design, |draft| draft.planks_json())

@@ -345,7 +345,8 @@ pub unsafe extern "C" fn shapeop_ruledTooWide(
     }))
 }
 
-/// The JSON form of the last report, in which angles are in degrees; null if it is refused. The text is valid as long
+/// The JSON form of the last report (`docs/ruled-report.schema.json`), in which angles are in degrees; null if it is
+/// refused. The text is valid as long
 /// as that of `shapeop_ruledStripsText`.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_ruledReportText(design: *mut ShapeOpRuled) -> *const c_char {
