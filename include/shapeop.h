@@ -4764,7 +4764,8 @@ enum shapeop_err shapeop_ruledJointReport(struct ShapeOpRuled *design,
 SHAPEOP_API enum shapeop_err shapeop_ruledTooWide(struct ShapeOpRuled *design, int *strips, int capacity, int *count);
 
 /**
- * The JSON form of the last report, in which angles are in degrees; null if it is refused. The text is valid as long
+ * The JSON form of the last report (`docs/ruled-report.schema.json`), in which angles are in degrees; null if it is
+ * refused. The text is valid as long
  * as that of `shapeop_ruledStripsText`.
  */
 SHAPEOP_API const char *shapeop_ruledReportText(struct ShapeOpRuled *design);
@@ -4955,8 +4956,8 @@ enum shapeop_err shapeop_ruledDowels(struct ShapeOpRuled *design,
                                      int *count);
 
 /**
- * The JSON form of the planks that were cut last, in which angles are in degrees; null if it is refused. The text is
- * valid as long as that of `shapeop_ruledStripsText`.
+ * The JSON form of the planks that were cut last (`docs/ruled-planks.schema.json`), in which angles are in degrees;
+ * null if it is refused. The text is valid as long as that of `shapeop_ruledStripsText`.
  */
 SHAPEOP_API const char *shapeop_ruledPlanksText(struct ShapeOpRuled *design);
 

@@ -138,7 +138,7 @@ fn make(design: *mut ShapeOpRuled, call: &Call) -> (bool, Vec<f64>) {
         match call {
             Call::Create(points, faces) => {
                 let indices = [0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 7, 6, 4, 5, 8, *faces];
-                let made = shapeop_ruledCreate(points.as_ptr(), 9, indices.as_ptr(), 16, &4, 1, null.cast());
+                let made = shapeop_ruledCreate(points.as_ptr(), 9, indices.as_ptr(), 16, &4, 1, null);
                 shapeop_ruledDelete(made);
                 return (!made.is_null() || !last_error(ptr::null_mut()).is_empty(), room);
             }
