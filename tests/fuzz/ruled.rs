@@ -2,6 +2,8 @@
 //! not finite, counts that do not fit. None crashes, none hands out a number that is not finite, and a refused one changes nothing and
 //! says why.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::ffi::{c_int, c_uint};
 use std::ptr;
 
@@ -14,10 +16,10 @@ use super::canal::number;
 use super::last_error;
 
 /// Sequences of the ordinary run.
-const SEQUENCES: u32 = 300;
+const SEQUENCES: u32 = 6_000;
 
 /// Points along a side of the mesh.
-const SIDE: c_int = 6;
+const SIDE: c_int = 8;
 
 /// Numbers that a call may write.
 const ROOM: usize = 4096;
@@ -69,16 +71,26 @@ fn weights() -> impl Strategy<Value = [f64; 6]> {
     [(); 6].map(|()| positive())
 }
 
+/// Two lines across one of the families, one of their points anywhere.
+fn drawn((a, b, any, turns): (f64, f64, f64, bool)) -> Call {
+    let line = |at: f64| [-0.6, 0.0, 0.6].map(|t| if turns { [t, at, at * t] } else { [at, t, at * t] });
+    let mut points = [line(a), line(b)].concat().concat();
+    points[4] += 0.1 * any;
+    Call::Drawn(points, 3, false)
+}
+
 fn call() -> impl Strategy<Value = Call> {
     let making = prop_oneof![
         1 => (proptest::collection::vec(number(), 27), integer()).prop_map(|(p, n)| Call::Create(p, n)),
         2 => (0..3_i32, proptest::option::of(vector()), 0..3_i32).prop_map(|(f, h, c)| Call::Family(f, h, c)),
         4 => (1..6_i32, weights()).prop_map(|(count, weights)| Call::LevelBoundaries(count, 0.0, vec![], weights)),
         2 => (integer(), number(), numbers(3), weights()).prop_map(|(n, w, v, f)| Call::LevelBoundaries(n, w, v, f)),
+        2 => (1..6_i32, positive()).prop_map(|(count, least)| Call::Levels(count, 0.0, vec![], least)),
         2 => (integer(), number(), numbers(4), number()).prop_map(|(n, w, v, l)| Call::Levels(n % 1000, w, v, l)),
         2 => (numbers(13), number(), 0..3_i32).prop_map(|(p, a, r)| Call::Planes(p, a, r)),
         2 => numbers(7).prop_map(Call::Axes),
         2 => (numbers(24), integer(), any::<bool>()).prop_map(|(p, n, closed)| Call::Drawn(p, n, closed)),
+        2 => (-0.9..-0.1_f64, -0.1..0.9_f64, number(), any::<bool>()).prop_map(drawn),
         8 => (4..8_i32, 0..2_i32).prop_map(|(count, shared)| Call::Start(count, shared)),
         1 => (integer(), integer()).prop_map(|(count, shared)| Call::Start(count, shared)),
         2 => (0..4_i32, number(), numbers(20)).prop_map(|(s, by, p)| Call::Control(s, by, p)),
@@ -90,7 +102,7 @@ fn call() -> impl Strategy<Value = Call> {
     let telling = prop_oneof![
         vector().prop_map(Call::GreatCircle),
         (vector(), 0..3_i32, positive(), positive()).prop_map(|(seed, b, step, l)| Call::Trace(seed, b, step, l)),
-        (integer(), 0.0..4.0_f64, number()).prop_map(|(strip, u, v)| Call::Evaluate(strip, u, v)),
+        (integer(), 0.0..4.0_f64, positive()).prop_map(|(strip, u, v)| Call::Evaluate(strip, u, v)),
         (positive(), 0..4_u32).prop_map(|(ratio, samples)| Call::Report(ratio, samples)),
         (-1..4_i32, integer(), prop_oneof![Just(1e-4), number()]).prop_map(|(s, n, t)| Call::Trim(s, n % 9, t)),
         (-1..4_i32, integer(), 0..3_i32).prop_map(|(strip, n, trimmed)| Call::Rulings(strip, n % 99, trimmed)),
@@ -117,7 +129,7 @@ fn or_null(numbers: Option<&[f64]>) -> *const f64 {
 
 fn saddle() -> *mut ShapeOpRuled {
     let at = |k: c_int| 2.0 * f64::from(k) / f64::from(SIDE - 1) - 1.0;
-    let point = |k: c_int| [at(k % SIDE), at(k / SIDE), at(k % SIDE) * at(k / SIDE) + 0.1 * at(k % SIDE).powi(3)];
+    let point = |k: c_int| [at(k % SIDE), at(k / SIDE), at(k % SIDE) * at(k / SIDE) + 0.05 * at(k % SIDE).powi(3)];
     let points: Vec<f64> = (0..SIDE * SIDE).flat_map(point).collect();
     let corners = |k: c_int| [k, k + 1, k + 1 + SIDE, k + SIDE];
     let quads: Vec<c_int> = (0..SIDE * (SIDE - 1)).filter(|k| (k + 1) % SIDE != 0).flat_map(corners).collect();
@@ -151,8 +163,10 @@ fn make(design: *mut ShapeOpRuled, call: &Call) -> (bool, Vec<f64>) {
                 options.struct_size = size_of_val(&options) as c_uint;
                 shapeop_ruledDefaultLevelOptions(0, &mut options);
                 [options.orthogonal, options.direction, options.equidistant] = [weights[0], weights[1], weights[2]];
-                [options.geodesic, options.conoidal, options.laplace] = [weights[3], weights[4], weights[5]];
-                options.max_iterations = 3;
+                // The spherical image of this mesh is folded: mostly refused.
+                let conoidal = if weights[4] <= 1.0 { 0.0 } else { weights[4] };
+                [options.geodesic, options.conoidal, options.laplace] = [weights[3], conoidal, weights[5]];
+                (options.max_iterations, options.allow_folds) = (3, c_int::from(weights[5] > 1.0));
                 let (data, nb) = (values.as_ptr(), values.len() as c_int);
                 let (boundaries, count) = (ptr::null(), *count % 1000);
                 shapeop_ruledSetLevelBoundaries(design, &options, count, *width, data, nb, boundaries, None, user)
@@ -330,8 +344,17 @@ fn check(is_right: bool, what: &str) -> Result<(), TestCaseError> {
     if is_right { Ok(()) } else { Err(TestCaseError::fail(what.to_owned())) }
 }
 
-fn run(sequence: &[(usize, Call)]) -> Result<(), TestCaseError> {
+/// How often each kind of call was carried out.
+type Done = BTreeMap<String, usize>;
+
+fn run(sequence: &[(usize, Call)], done: &mut Done) -> Result<(), TestCaseError> {
     let design = saddle();
+    check(!design.is_null(), &last_error(ptr::null_mut()))?;
+    // Every other sequence begins with strips.
+    if sequence.len() % 2 == 0 {
+        make(design, &Call::LevelBoundaries(2, 0.0, vec![], [1.0, 0.0, 0.0, 0.0, 0.0, 1e-3]));
+        make(design, &Call::Start(5, c_int::from(sequence.len() % 4 == 0)));
+    }
     let stale = shapeop_ruledCopy(design);
     shapeop_ruledDelete(stale);
     let solver = shapeop_create();
@@ -339,10 +362,15 @@ fn run(sequence: &[(usize, Call)]) -> Result<(), TestCaseError> {
     handles.extend([stale, solver.cast(), ptr::null_mut(), ptr::without_provenance_mut(0x7fff_1234)]);
     for (which, call) in sequence {
         let handle = handles[which % handles.len()];
+        if std::env::var_os("SHAPEOP_FUZZ_TRACE").is_some() {
+            eprintln!("{call:?}");
+        }
         let before = picture(handle);
         let (is_done, room) = make(handle, call);
         let message = last_error(ptr::null_mut());
         let after = picture(handle);
+        let kind = format!("{call:?}").split('(').next().unwrap_or_default().to_owned();
+        *done.entry(kind).or_default() += usize::from(is_done);
         if !matches!(call, Call::Create(..)) {
             check(is_done == message.is_empty(), &format!("{call:?}: {is_done}, but {message:?}"))?;
         }
@@ -364,5 +392,11 @@ fn no_sequence_of_calls_on_designs_crashes() {
     let config = Config { cases: SEQUENCES, failure_persistence: None, max_shrink_iters: 200, ..Config::default() };
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[23; 32]);
     let sequences = proptest::collection::vec((0..16_usize, call()), 1..25);
-    TestRunner::new_with_rng(config, rng).run(&sequences, |sequence| run(&sequence)).unwrap();
+    let done = RefCell::new(Done::new());
+    let run = |sequence: Vec<(usize, Call)>| run(&sequence, &mut done.borrow_mut());
+    TestRunner::new_with_rng(config, rng).run(&sequences, run).unwrap();
+    // A call that is always refused tests nothing.
+    let done = done.into_inner();
+    assert!(done.len() == 22 && done.values().all(|count| *count > 5), "{done:?}");
+    println!("{done:?}");
 }
