@@ -4,12 +4,13 @@
  *
  * Handles. A ShapeOpSolver* is a small integer (nonzero, below 2^31), not an address: never dereference it. A null
  * handle, one that was deleted, and one that never was a solver's are recognised and refused. Only the low 32 bits
- * count. A ShapeOpCanal* is a handle of a surface, and what is said of solvers here holds for it too.
+ * count. A ShapeOpCanal* is a handle of a surface, a ShapeOpRuled* of a design of ruled strips, and what is said of
+ * solvers here holds for them too.
  *
  * Ownership. Every solver of shapeop_create belongs to the caller, who deletes it with shapeop_delete, and every
- * surface, who deletes it with shapeop_canalDelete. Arrays belong to the caller: the library copies what it reads and
- * keeps no pointer. Texts belong to the library and are never freed; how long they stay valid is said with each
- * function.
+ * surface, who deletes it with shapeop_canalDelete, and every design, who deletes it with shapeop_ruledDelete. Arrays
+ * belong to the caller: the library copies what it reads and keeps no pointer. Texts belong to the library and are
+ * never freed; how long they stay valid is said with each function.
  *
  * Arrays. Points are double[3 * n]: x y z of point 0, then of point 1, and so on. Lengths of points are counted in
  * points, all others in entries. An array of length 0 may be null. Results are written only if the call succeeds.
@@ -21,8 +22,9 @@
  * Errors. A refused call changes nothing, and answers with an error code, with 1 (shapeop_init, shapeop_initDynamic,
  * shapeop_solve), with -1 (ids, counts, truths) or with null (handles, texts). In all cases, functions without a result
  * included, shapeop_lastError then says why and shapeop_lastErrorCode gives the code; after a call that succeeded the
- * text is empty and the code SO_SUCCESS. Of calls on surfaces, and of those that take no handle, shapeop_lastError of
- * null tells. Numbers that are not finite are refused where they enter, and none is ever handed out.
+ * text is empty and the code SO_SUCCESS. Of calls on surfaces and designs, and of those that take no handle,
+ * shapeop_lastError of null tells. Numbers that are not finite are refused where they enter, and none is ever handed
+ * out.
  *
  * Threads. Any thread may use any solver. A call on a solver that another call is using does not wait: it is refused
  * as busy. Different solvers can be used at the same time. From inside its own progress callback a solver can be read
@@ -111,6 +113,11 @@
  * A bit of the flags of spheres: another branch of the second curve is inside.
  */
 #define SHAPEOP_SPHERE_PIERCED 8
+
+/**
+ * For `strip`: all strips.
+ */
+#define SHAPEOP_RULED_ALL -1
 
 #if !defined(SHAPEOP_COMPAT_API_H)
 /**
@@ -334,6 +341,58 @@ typedef enum shapeop_canal_stop {
 } shapeop_canal_stop;
 
 /**
+ * Why a run stopped.
+ */
+typedef enum shapeop_ruled_stop {
+    /**
+     * There was nothing to iterate.
+     */
+    SO_RULED_STOP_NONE = 0,
+    /**
+     * Steps or decreases became small.
+     */
+    SO_RULED_STOP_CONVERGED = 1,
+    /**
+     * All iterations were used.
+     */
+    SO_RULED_STOP_ITERATIONS = 2,
+    /**
+     * No step lowers the value: it is as good as rounding allows.
+     */
+    SO_RULED_STOP_LINE_SEARCH = 3,
+    /**
+     * The callback said so.
+     */
+    SO_RULED_STOP_CANCELLED = 4,
+} shapeop_ruled_stop;
+
+/**
+ * What the spherical image of a field is like.
+ */
+typedef enum shapeop_ruled_image {
+    /**
+     * It was not asked for: the weight `conoidal` was 0.
+     */
+    SO_RULED_IMAGE_NONE = 0,
+    /**
+     * It covers a part of the sphere.
+     */
+    SO_RULED_IMAGE_REGULAR = 1,
+    /**
+     * It covers a part of the sphere twice.
+     */
+    SO_RULED_IMAGE_FOLDED = 2,
+    /**
+     * It collapsed to a great circle: every strip is conoidal, and the weight was not used.
+     */
+    SO_RULED_IMAGE_GREAT_CIRCLE = 3,
+    /**
+     * It collapsed to another curve: the surface is ruled, and the weight was not used.
+     */
+    SO_RULED_IMAGE_CURVE = 4,
+} shapeop_ruled_image;
+
+/**
  * How iterations are accelerated: see `shapeop_setAcceleration`.
  */
 typedef enum shapeop_acceleration {
@@ -486,11 +545,85 @@ typedef enum shapeop_canal_step {
 } shapeop_canal_step;
 
 /**
+ * What was found at a point of a mesh.
+ */
+typedef enum shapeop_ruled_point {
+    /**
+     * Two asymptotic directions.
+     */
+    SO_RULED_POINT_GOOD = 0,
+    /**
+     * The surface is flat or positively curved there: it has none.
+     */
+    SO_RULED_POINT_NOT_NEGATIVE = 1,
+    /**
+     * Its neighbours do not determine curvatures.
+     */
+    SO_RULED_POINT_NOT_FITTED = 2,
+} shapeop_ruled_point;
+
+/**
+ * Why an asymptotic curve ends.
+ */
+typedef enum shapeop_ruled_end {
+    /**
+     * At the boundary of the mesh.
+     */
+    SO_RULED_END_BOUNDARY = 0,
+    /**
+     * Where the direction is not known.
+     */
+    SO_RULED_END_UNKNOWN = 1,
+    /**
+     * At the length asked for.
+     */
+    SO_RULED_END_LENGTH = 2,
+    /**
+     * After the most steps.
+     */
+    SO_RULED_END_STEPS = 3,
+} shapeop_ruled_end;
+
+/**
+ * What strip boundaries are to be.
+ */
+typedef enum shapeop_ruled_levels {
+    /**
+     * Orthogonal to the rulings, at distances of one length where that is possible.
+     */
+    SO_RULED_LEVELS_ORTHOGONAL = 0,
+    /**
+     * Orthogonal to the rulings, at whatever distances.
+     */
+    SO_RULED_LEVELS_DIRECTION = 1,
+    /**
+     * At constant distances.
+     */
+    SO_RULED_LEVELS_EQUIDISTANT = 2,
+    /**
+     * Geodesic: the straightest on the surface.
+     */
+    SO_RULED_LEVELS_GEODESIC = 3,
+    /**
+     * Such that the rulings along each are parallel to a plane.
+     */
+    SO_RULED_LEVELS_CONOIDAL = 4,
+} shapeop_ruled_levels;
+
+/**
  * A super-canal surface: a circular net with a frame at each point, and the transformations that made it of its base.
  * What points to it is no address but a small integer, a handle. All functions named `shapeop_canal...` leave their
  * messages for `shapeop_lastError` of null.
  */
 typedef struct ShapeOpCanal ShapeOpCanal;
+
+/**
+ * A design of ruled strips: a negatively curved mesh, its asymptotic directions, strip boundaries across them, strips
+ * between these, conditions on strips. Each step needs those before it and takes back those after it. What points to
+ * it is no address but a small integer, a handle. All functions named `shapeop_ruled...` leave their messages for
+ * `shapeop_lastError` of null.
+ */
+typedef struct ShapeOpRuled ShapeOpRuled;
 
 #if !defined(SHAPEOP_COMPAT_API_H)
 /**
@@ -1166,6 +1299,702 @@ typedef struct shapeop_canal_properties {
      */
     double stress_residual_fine;
 } shapeop_canal_properties;
+
+/**
+ * How the asymptotic directions of a mesh are found. Start from `shapeop_ruledDefaultOptions`.
+ */
+typedef struct shapeop_ruled_options {
+    /**
+     * In: `sizeof(shapeop_ruled_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Which of the two families rulings follow: 0, that of negative torsion, or 1. Default 0.
+     */
+    int family;
+    /**
+     * 1: signs of directions may disagree across some edges if they must. Default 0.
+     */
+    int allow_cut;
+    /**
+     * Rings of neighbours are added to a point until there are so many, 5 to 96. Default 18.
+     */
+    unsigned int least_neighbours;
+    /**
+     * Points whose Gaussian curvature is not below minus this times the square of the greatest curvature are masked, 0
+     * to 1. Default 1e-6.
+     */
+    double flatness;
+    /**
+     * The part of the points that may be masked, 0 to 1; never all. Default 0.05.
+     */
+    double max_mask;
+    /**
+     * Directions point along this vector on the whole, x; all three 0: along x. Default 0.
+     */
+    double hint_x;
+    /**
+     * See `hint_x`.
+     */
+    double hint_y;
+    /**
+     * See `hint_x`.
+     */
+    double hint_z;
+} shapeop_ruled_options;
+
+/**
+ * What is asked of a level function, by weights of 0 or more without units. Start from
+ * `shapeop_ruledDefaultLevelOptions`.
+ */
+typedef struct shapeop_ruled_level_options {
+    /**
+     * In: `sizeof(shapeop_ruled_level_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * The most iterations. Default 30.
+     */
+    unsigned int max_iterations;
+    /**
+     * 1: a folded spherical image is used nevertheless. Default 0.
+     */
+    int allow_folds;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * Boundaries orthogonal to the rulings, at a distance of one length.
+     */
+    double orthogonal;
+    /**
+     * Boundaries orthogonal to the rulings, at whatever distances.
+     */
+    double direction;
+    /**
+     * Boundaries at constant distances.
+     */
+    double equidistant;
+    /**
+     * Geodesic boundaries; one of the weights above must be positive too.
+     */
+    double geodesic;
+    /**
+     * Boundaries whose rulings are parallel to a plane; one of the first two weights must be positive too.
+     */
+    double conoidal;
+    /**
+     * Smoothness; keep it low.
+     */
+    double laplace;
+    /**
+     * Iterations end where the sum of the terms fell by less than this part of it. Default 1e-6.
+     */
+    double relative_decrease;
+} shapeop_ruled_level_options;
+
+/**
+ * What is done to strip boundaries. Start from `shapeop_ruledDefaultBoundaryOptions`.
+ */
+typedef struct shapeop_ruled_boundary_options {
+    /**
+     * In: `sizeof(shapeop_ruled_boundary_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * 1: open ends are extended beyond the surface, so that strips cover it up to the rim. Default 1.
+     */
+    int extends;
+    /**
+     * 1: there is a boundary beyond the surface before the first and after the last. Default 1; drawn boundaries have
+     * none.
+     */
+    int overshoots;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * Level curves shorter than so many strip widths are dropped, unless that leaves none. Default 2.
+     */
+    double least_length;
+} shapeop_ruled_boundary_options;
+
+/**
+ * What the progress callback of a call on designs is told.
+ */
+typedef struct shapeop_ruled_progress {
+    /**
+     * `sizeof(shapeop_ruled_progress)` in the library; fields may be added at the end.
+     */
+    unsigned int struct_size;
+    /**
+     * Iterations made so far.
+     */
+    unsigned int iteration;
+    /**
+     * The part done, 0 to 1, of what may be needed.
+     */
+    double fraction;
+    /**
+     * What is being minimised.
+     */
+    double value;
+    /**
+     * The largest distance of a sample of the strips to the mesh, in model units; 0 while a level function is found.
+     */
+    double largest_deviation;
+    /**
+     * The largest distance of neighbours' boundaries, in model units; 0 while a level function is found.
+     */
+    double largest_gap;
+} shapeop_ruled_progress;
+
+/**
+ * Called before every iteration, on the thread that made the call. Returns 0 to go on; anything else ends the call,
+ * which succeeds with its best so far. It must return: no exception, no `longjmp`.
+ */
+typedef int (*shapeop_ruled_progress_callback)(const struct shapeop_ruled_progress *progress, void *user);
+
+/**
+ * What was found of a level function.
+ */
+typedef struct shapeop_ruled_level_report {
+    /**
+     * In: `sizeof(shapeop_ruled_level_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Why iterations ended; `SO_RULED_STOP_NONE` if a linear problem was all there was.
+     */
+    enum shapeop_ruled_stop stop;
+    /**
+     * Iterations made.
+     */
+    unsigned int iterations;
+    /**
+     * Points around which the function does not rise on one side and fall on the other.
+     */
+    unsigned int critical_count;
+    /**
+     * What the spherical image is like.
+     */
+    enum shapeop_ruled_image image;
+    /**
+     * Triangles without an image, or one without area.
+     */
+    unsigned int image_unused_count;
+    /**
+     * The least length of the gradient: 1 where boundaries are at the distance of their levels.
+     */
+    double least_slope;
+    /**
+     * The greatest length of the gradient.
+     */
+    double greatest_slope;
+    /**
+     * How much of the image is area, 0 to 1; 0 of none.
+     */
+    double image_extent;
+    /**
+     * The part of its area that is folded over, 0 to 1/2.
+     */
+    double image_folded;
+    /**
+     * How far directions are from one plane: their least singular value over the largest.
+     */
+    double image_flatness;
+    /**
+     * The unit vector that directions are most nearly orthogonal to, x.
+     */
+    double image_axis_x;
+    /**
+     * See `image_axis_x`.
+     */
+    double image_axis_y;
+    /**
+     * See `image_axis_x`.
+     */
+    double image_axis_z;
+} shapeop_ruled_level_report;
+
+/**
+ * How strips are optimised. Start from `shapeop_ruledDefaultOptimiseOptions`. Weights are 0 or more; distances are in
+ * units of the mesh's diagonal and terms are means, so that weights depend on neither size nor sampling.
+ */
+typedef struct shapeop_ruled_optimise_options {
+    /**
+     * In: `sizeof(shapeop_ruled_optimise_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * The most iterations. Default 50.
+     */
+    unsigned int max_iterations;
+    /**
+     * Samples along a boundary for each control point, 1 to 1000. Default 4.
+     */
+    unsigned int samples_along;
+    /**
+     * Samples along a ruling, 2 to 1000. Default 5.
+     */
+    unsigned int samples_across;
+    /**
+     * The weight of the squared distance from strips to the mesh. Default 1.
+     */
+    double proximity;
+    /**
+     * The part of it for what is beyond the boundary of the mesh, 0 to 1. Default 0.01.
+     */
+    double beyond;
+    /**
+     * The weight of the squared distance between boundaries that are to be one. Default 1.
+     */
+    double gap;
+    /**
+     * The weight of the squared distance from the mesh to the nearest strip. Default 1.
+     */
+    double coverage;
+    /**
+     * The weight of the thin plate energy of the way from the start. Default 1e-6.
+     */
+    double thin_plate;
+    /**
+     * The weight of the squared way of the control points from the start. Default 1e-4.
+     */
+    double proximal;
+    /**
+     * The largest distance of samples of the strips to the mesh, in model units; 0: no bound. Default 0.
+     */
+    double largest_deviation;
+    /**
+     * The least length of a ruling, in model units; 0: no bound. Default 0.
+     */
+    double least_width;
+    /**
+     * Stop where no control point moves by more than this multiple of the mesh's diagonal, or the value falls by less
+     * than this part of it. Default 1e-6.
+     */
+    double tolerance;
+} shapeop_ruled_optimise_options;
+
+/**
+ * What optimising found.
+ */
+typedef struct shapeop_ruled_optimise_report {
+    /**
+     * In: `sizeof(shapeop_ruled_optimise_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Why it stopped.
+     */
+    enum shapeop_ruled_stop stop;
+    /**
+     * Iterations made.
+     */
+    unsigned int iterations;
+    /**
+     * Numbers that the conditions left free.
+     */
+    unsigned int free_count;
+    /**
+     * What is minimised, at the start, where the conditions are met.
+     */
+    double before;
+    /**
+     * At the end: the sum of the four terms, and the excess over bounds in units of the mesh's diagonal.
+     */
+    double after;
+    /**
+     * Its term of distances from strips to the mesh.
+     */
+    double proximity;
+    /**
+     * Its term of distances between neighbours.
+     */
+    double gap;
+    /**
+     * Its term of distances from the mesh to strips.
+     */
+    double coverage;
+    /**
+     * Its terms of the way from the start.
+     */
+    double way;
+    /**
+     * By how much a bound is exceeded at most, in model units.
+     */
+    double excess;
+    /**
+     * The largest distance of a sample within the boundary of the mesh to it, in model units.
+     */
+    double largest_deviation;
+    /**
+     * The largest distance of a sample of a boundary to the neighbour's, in model units; 0 where they are shared.
+     */
+    double largest_gap;
+} shapeop_ruled_optimise_report;
+
+/**
+ * How strips are judged. Start from `shapeop_ruledDefaultReportOptions`.
+ */
+typedef struct shapeop_ruled_report_options {
+    /**
+     * In: `sizeof(shapeop_ruled_report_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Samples in each span along a strip, 1 to 1000. Default 4.
+     */
+    unsigned int samples_along;
+    /**
+     * Samples across a strip, its boundaries included, 2 to 1000. Default 5.
+     */
+    unsigned int samples_across;
+    /**
+     * Columns of triangles in each span of a trimmed strip, 1 to 1000. Default 4.
+     */
+    unsigned int columns_per_span;
+    /**
+     * A strip is too wide where its width is above this multiple of the least radius of curvature. Default 0.5.
+     */
+    double feature_ratio;
+    /**
+     * How far the line along which a strip is cut may be from the boundary of the mesh, over its diagonal; above 0, at
+     * most 0.01. Default 1e-7.
+     */
+    double trim_tolerance;
+} shapeop_ruled_report_options;
+
+/**
+ * What there is to say of all strips.
+ */
+typedef struct shapeop_ruled_report {
+    /**
+     * In: `sizeof(shapeop_ruled_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * The number of strips.
+     */
+    unsigned int strip_count;
+    /**
+     * The number of pairs of neighbours.
+     */
+    unsigned int joint_count;
+    /**
+     * Strips that are too wide for the features of the mesh.
+     */
+    unsigned int too_wide_count;
+    /**
+     * The largest distance of the strips from the mesh, in model units; what is beyond its boundary does not count.
+     */
+    double largest_deviation;
+    /**
+     * The root mean square of it over the area.
+     */
+    double rms_deviation;
+    /**
+     * The largest distance of a point of the mesh from the nearest strip, in model units.
+     */
+    double largest_uncovered;
+    /**
+     * The root mean square of it over the area.
+     */
+    double rms_uncovered;
+    /**
+     * The area of the mesh.
+     */
+    double reference_area;
+    /**
+     * The area of all trimmed strips.
+     */
+    double trimmed_area;
+    /**
+     * The trimmed area over that of the mesh: 1 where strips cover it once.
+     */
+    double coverage;
+    /**
+     * The largest gap between neighbours, in model units.
+     */
+    double largest_gap;
+    /**
+     * The mean gap.
+     */
+    double mean_gap;
+    /**
+     * The largest angle between tangent planes of neighbours along their boundary, in radians.
+     */
+    double largest_kink;
+    /**
+     * The mean angle.
+     */
+    double mean_kink;
+    /**
+     * The standard deviation of all widths over their mean.
+     */
+    double width_variation;
+} shapeop_ruled_report;
+
+/**
+ * What there is to say of one strip.
+ */
+typedef struct shapeop_ruled_strip_report {
+    /**
+     * In: `sizeof(shapeop_ruled_strip_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * 1 if it is too wide for the features of the mesh.
+     */
+    int is_too_wide;
+    /**
+     * The largest distance from the mesh, in model units.
+     */
+    double largest_deviation;
+    /**
+     * The sample that has it, x.
+     */
+    double at_x;
+    /**
+     * See `at_x`.
+     */
+    double at_y;
+    /**
+     * See `at_x`.
+     */
+    double at_z;
+    /**
+     * The root mean square over the area.
+     */
+    double rms_deviation;
+    /**
+     * The area of the whole strip.
+     */
+    double area;
+    /**
+     * The area of what is left when it is trimmed.
+     */
+    double trimmed_area;
+    /**
+     * The least width, in model units.
+     */
+    double least_width;
+    /**
+     * The mean width.
+     */
+    double mean_width;
+    /**
+     * The greatest width.
+     */
+    double greatest_width;
+    /**
+     * The standard deviation of its widths over their mean.
+     */
+    double width_variation;
+    /**
+     * The greatest width over the least radius of curvature there.
+     */
+    double width_over_feature;
+} shapeop_ruled_strip_report;
+
+/**
+ * What there is to say of two neighbours.
+ */
+typedef struct shapeop_ruled_joint_report {
+    /**
+     * In: `sizeof(shapeop_ruled_joint_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * The strip whose second boundary it is.
+     */
+    int first;
+    /**
+     * The strip whose first boundary it is.
+     */
+    int second;
+    /**
+     * Samples of gaps; if 0, all gaps are 0 too.
+     */
+    unsigned int gap_count;
+    /**
+     * Samples of kinks.
+     */
+    unsigned int kink_count;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * The largest gap, in model units.
+     */
+    double largest_gap;
+    /**
+     * The mean gap.
+     */
+    double mean_gap;
+    /**
+     * The sample with the largest gap, x.
+     */
+    double gap_x;
+    /**
+     * See `gap_x`.
+     */
+    double gap_y;
+    /**
+     * See `gap_x`.
+     */
+    double gap_z;
+    /**
+     * The largest angle between tangent planes, in radians: 0 where the strips go on smoothly.
+     */
+    double largest_kink;
+    /**
+     * The mean angle.
+     */
+    double mean_kink;
+    /**
+     * The sample with the largest angle, x.
+     */
+    double kink_x;
+    /**
+     * See `kink_x`.
+     */
+    double kink_y;
+    /**
+     * See `kink_x`.
+     */
+    double kink_z;
+} shapeop_ruled_joint_report;
+
+/**
+ * How a strip is cut into planks. Start from `shapeop_ruledDefaultPlankOptions`.
+ */
+typedef struct shapeop_ruled_plank_options {
+    /**
+     * In: `sizeof(shapeop_ruled_plank_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * 1: `first_cut` says where one of the cuts is. Default 0: at the first ruling.
+     */
+    int has_first_cut;
+    /**
+     * The thickness of the planks, in model units, above 0. It has no default.
+     */
+    double thickness;
+    /**
+     * How far the long sides of a plank are beyond the rulings, in model units, 0 or more. Default 0.
+     */
+    double depth;
+    /**
+     * `axis . x` of one of the cuts.
+     */
+    double first_cut;
+    /**
+     * The angle between rulings and planks that counts as none, in radians, 0 or more. Default 1e-4 degrees.
+     */
+    double tolerance;
+} shapeop_ruled_plank_options;
+
+/**
+ * What there is to say of all planks of a strip.
+ */
+typedef struct shapeop_ruled_planks {
+    /**
+     * In: `sizeof(shapeop_ruled_planks)`.
+     */
+    unsigned int struct_size;
+    /**
+     * The number of planks.
+     */
+    unsigned int plank_count;
+    /**
+     * The axis, a unit vector across the planks, x.
+     */
+    double axis_x;
+    /**
+     * See `axis_x`.
+     */
+    double axis_y;
+    /**
+     * See `axis_x`.
+     */
+    double axis_z;
+    /**
+     * The thickness of all planks.
+     */
+    double thickness;
+    /**
+     * The greatest angle between a control ruling and the planks, in radians.
+     */
+    double deviation;
+    /**
+     * The area of all boards, in square model units.
+     */
+    double stock_area;
+    /**
+     * The part of it that is cut off.
+     */
+    double offcut;
+} shapeop_ruled_planks;
+
+/**
+ * A plank: a prism of the planks' thickness over a flat outline. Lengths are in model units.
+ */
+typedef struct shapeop_ruled_plank {
+    /**
+     * In: `sizeof(shapeop_ruled_plank)`.
+     */
+    unsigned int struct_size;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * `axis . x` of the lower face.
+     */
+    double lower;
+    /**
+     * `axis . x` of the upper face.
+     */
+    double upper;
+    /**
+     * How much of its thickness has rulings: 1, but for the first and the last plank perhaps.
+     */
+    double filled;
+    /**
+     * The parameter of the strip's ruling in the lower face, or its first.
+     */
+    double first_u;
+    /**
+     * The parameter of the strip's ruling in the upper face, or its last.
+     */
+    double last_u;
+    /**
+     * The length of the board that it is cut from.
+     */
+    double length;
+    /**
+     * The width of that board.
+     */
+    double width;
+    /**
+     * The angle between the cut at the strip's first boundary and a square one, in radians.
+     */
+    double first_end_angle;
+    /**
+     * The angle between the cut at the strip's second boundary and a square one, in radians.
+     */
+    double second_end_angle;
+    /**
+     * The part of the board that is cut off.
+     */
+    double offcut;
+} shapeop_ruled_plank;
 
 #ifdef __cplusplus
 extern "C" {
@@ -3239,6 +4068,908 @@ const char *shapeop_canalPartsText(const double *points,
                                    const double *axes,
                                    double thickness,
                                    double height);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledDefaultOptions(struct shapeop_ruled_options *options);
+
+/**
+ * Creates the design of a mesh, and finds its asymptotic directions. Null if it is refused, as a mesh is that is not
+ * negatively curved (`SO_CURVATURE_SIGN`) or no oriented surface. Delete it with `shapeop_ruledDelete`.
+ *
+ * - `points`: `x0 y0 z0 x1 ...` in model units, `nb_points` points, all of which faces use.
+ * - `face_indices`: the point indices of all faces behind each other, `nb_face_indices` in all; quads are split along
+ *   their shorter diagonal, larger faces into a fan.
+ * - `counts`: the number of corners of each face. `nb_counts` 1: the same for all; otherwise one per face.
+ * - `options`: null for the defaults.
+ *
+ * # Safety
+ * Each array is null or readable for its number of values; `options` is null, or its `struct_size` is set and it is
+ * readable for so many bytes.
+ */
+SHAPEOP_API
+struct ShapeOpRuled *shapeop_ruledCreate(const double *points,
+                                         int nb_points,
+                                         const int *face_indices,
+                                         int nb_face_indices,
+                                         const int *counts,
+                                         int nb_counts,
+                                         const struct shapeop_ruled_options *options);
+
+/**
+ * Creates a copy of a design, with all that was made of it; null if it is refused.
+ */
+SHAPEOP_API struct ShapeOpRuled *shapeop_ruledCopy(struct ShapeOpRuled *design);
+
+/**
+ * Deletes a design. Null does nothing; a busy design is left alone, as is whatever is no design.
+ */
+SHAPEOP_API void shapeop_ruledDelete(struct ShapeOpRuled *design);
+
+/**
+ * Takes the directions of a family, 0 or 1, that point along `hint` on the whole (null: along x). With `allow_cut` 1
+ * their signs may disagree across some edges if they must (`shapeop_ruledFlips`); otherwise a mesh around which no
+ * signs agree is refused (`SO_NOT_ORIENTABLE`). Takes back boundaries and strips.
+ *
+ * # Safety
+ * `hint` is null or readable for 3 doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledSelectFamily(struct ShapeOpRuled *design,
+                                           int family,
+                                           const double *hint,
+                                           int allow_cut);
+
+/**
+ * Writes the triangles of a design's mesh, three points each, if there is room for `capacity` of them, and their
+ * number to `count`.
+ *
+ * # Safety
+ * `triangles` is null or writable for `3 * capacity` ints, `count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledTriangles(struct ShapeOpRuled *design,
+                                        int *triangles,
+                                        int capacity,
+                                        int *count);
+
+/**
+ * Writes the curvature at each point of a design's mesh if there is room for `capacity` points, and their number to
+ * `count`: `principal`, two curvatures in 1/model units, the greater first, positive where the surface bends towards
+ * the normal; `directions`, their unit directions; `normals`, of higher order than those of triangles. Each output but
+ * `count` may be null.
+ *
+ * # Safety
+ * `principal` is null or writable for `2 * capacity` doubles, `directions` for `6 * capacity`, `normals` for
+ * `3 * capacity`, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledCurvatures(struct ShapeOpRuled *design,
+                                         double *principal,
+                                         double *directions,
+                                         double *normals,
+                                         int capacity,
+                                         int *count);
+
+/**
+ * Writes the asymptotic directions of a family, 0 or 1, at the points of a design's mesh if there is room for
+ * `capacity` points, and their number to `count`: `directions`, unit vectors with any sign, 0 where there are none;
+ * `status`, a `shapeop_ruled_point` each. Each output but `count` may be null.
+ *
+ * # Safety
+ * `directions` is null or writable for `3 * capacity` doubles, `status` for `capacity` ints, `count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledDirections(struct ShapeOpRuled *design,
+                                         int family,
+                                         double *directions,
+                                         int *status,
+                                         int capacity,
+                                         int *count);
+
+/**
+ * Writes the field that rulings follow, the directions of the family selected with signs that agree, as
+ * `shapeop_ruledDirections` does; `is_known` is 0 where there is no direction.
+ *
+ * # Safety
+ * `directions` is null or writable for `3 * capacity` doubles, `is_known` for `capacity` ints, `count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledField(struct ShapeOpRuled *design,
+                                    double *directions,
+                                    int *is_known,
+                                    int capacity,
+                                    int *count);
+
+/**
+ * Writes the edges, two points each, across which the field changes its sign, if there is room for `capacity` of them,
+ * and their number to `count`.
+ *
+ * # Safety
+ * `edges` is null or writable for `2 * capacity` ints, `count` for one.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledFlips(struct ShapeOpRuled *design, int *edges, int capacity, int *count);
+
+/**
+ * Follows the asymptotic curve of the field from the point of the mesh nearest to `seed`, along the field or, with
+ * `is_backward` 1, against it, for `length` model units at most. A step is `step` edges long, above 0 and at most 0.5.
+ * Writes its points, the start first, if there is room for `capacity` of them, their number to `count`, and to `end`,
+ * which may be null, why it ends there (a `shapeop_ruled_end`).
+ *
+ * # Safety
+ * `seed` is null or readable for 3 doubles; `points` is null or writable for `3 * capacity` doubles, `count` and `end`
+ * for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledTrace(struct ShapeOpRuled *design,
+                                    const double *seed,
+                                    int is_backward,
+                                    double step,
+                                    double length,
+                                    double *points,
+                                    int capacity,
+                                    int *count,
+                                    int *end);
+
+/**
+ * Writes the default options for boundaries of a kind (a `shapeop_ruled_levels`) to `options`, whose `struct_size`
+ * must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledDefaultLevelOptions(int kind, struct shapeop_ruled_level_options *options);
+
+/**
+ * Finds a function that rises along the field and takes level curves of it as strip boundaries, in the order along the
+ * field. Which levels, exactly one of three says: `count`, so many, evenly spaced; `width`, as many as fit at this
+ * distance, in model units; `values`, these, ascending, `nb_values` of them. The others are 0 or null. On a surface
+ * with holes, around which the function jumps by a multiple of the levels' distance, values cannot be given.
+ *
+ * `options` and `boundaries` are null for the defaults. `progress` may be null; it is called before every iteration,
+ * and what ends the call leaves the best so far. Takes back boundaries and strips.
+ *
+ * # Safety
+ * `values` is null or readable for `nb_values` doubles. `options` and `boundaries` are null, or their `struct_size` is
+ * set and they are readable for so many bytes. `progress` is null or a function of that signature.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledSetLevelBoundaries(struct ShapeOpRuled *design,
+                                                 const struct shapeop_ruled_level_options *options,
+                                                 int count,
+                                                 double width,
+                                                 const double *values,
+                                                 int nb_values,
+                                                 const struct shapeop_ruled_boundary_options *boundaries,
+                                                 shapeop_ruled_progress_callback progress,
+                                                 void *user);
+
+/**
+ * As `shapeop_ruledSetLevelBoundaries`, with other levels of the function that was found before; not on a surface with
+ * holes.
+ *
+ * # Safety
+ * `values` is null or readable for `nb_values` doubles. `boundaries` is null, or its `struct_size` is set and it is
+ * readable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledSetLevels(struct ShapeOpRuled *design,
+                                        int count,
+                                        double width,
+                                        const double *values,
+                                        int nb_values,
+                                        const struct shapeop_ruled_boundary_options *boundaries);
+
+/**
+ * Writes the values of the level function at the points of the mesh, in model units, the least 0, if there is room for
+ * `capacity` of them, and their number to `count`.
+ *
+ * # Safety
+ * `values` is null or writable for `capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledLevelValues(struct ShapeOpRuled *design,
+                                          double *values,
+                                          int capacity,
+                                          int *count);
+
+/**
+ * Writes the sum of the terms of the level function at the start and after each iteration, if there is room for
+ * `capacity` of them, and their number to `count`; none if a linear problem was all there was.
+ *
+ * # Safety
+ * `values` is null or writable for `capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledLevelHistory(struct ShapeOpRuled *design,
+                                           double *values,
+                                           int capacity,
+                                           int *count);
+
+/**
+ * Writes the points around which the level function does not rise on one side and fall on the other, if there is room
+ * for `capacity` of them, and their number to `count`.
+ *
+ * # Safety
+ * `points` is null or writable for `capacity` ints, `count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledCriticalPoints(struct ShapeOpRuled *design,
+                                             int *points,
+                                             int capacity,
+                                             int *count);
+
+/**
+ * Writes what was found of the level function to `report`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `report` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledLevelReport(struct ShapeOpRuled *design,
+                                          struct shapeop_ruled_level_report *report);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledDefaultBoundaryOptions(struct shapeop_ruled_boundary_options *options);
+
+/**
+ * Takes plane sections as strip boundaries: for each plane the longest. `planes` has four numbers for each of
+ * `nb_planes`, the normal and the offset of `normal . x = offset`; they follow each other along the field, or against
+ * it. Sections should cross the field at `least_angle` or more, in radians (15 degrees are good): with
+ * `refuses_oblique` 1 those that do not are refused (`SO_INFEASIBLE`). The least angle of each is written to `angles`,
+ * which may be null. `boundaries` is null for the defaults. Takes back boundaries and strips.
+ *
+ * # Safety
+ * `planes` is null or readable for `4 * nb_planes` doubles, `angles` is null or writable for `nb_planes`. `boundaries`
+ * is null, or its `struct_size` is set and it is readable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledSetPlanarBoundaries(struct ShapeOpRuled *design,
+                                                  const double *planes,
+                                                  int nb_planes,
+                                                  double least_angle,
+                                                  int refuses_oblique,
+                                                  const struct shapeop_ruled_boundary_options *boundaries,
+                                                  double *angles);
+
+/**
+ * Takes the curves as strip boundaries along which the field is orthogonal to one of `nb_axes` vectors each, of any
+ * length above 0: rulings that begin there are parallel to a plane. They follow each other along the field, or against
+ * it. `boundaries` is null for the defaults. Takes back boundaries and strips.
+ *
+ * # Safety
+ * `axes` is null or readable for `3 * nb_axes` doubles. `boundaries` is null, or its `struct_size` is set and it is
+ * readable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledSetGreatCircleBoundaries(struct ShapeOpRuled *design,
+                                                       const double *axes,
+                                                       int nb_axes,
+                                                       const struct shapeop_ruled_boundary_options *boundaries);
+
+/**
+ * Writes the curves on the mesh along which the field is orthogonal to `axis`, of any length above 0: the points of
+ * all behind each other if there is room for `capacity` of them, and the number of points of each to `lengths` if
+ * there is room for `curve_capacity` of them; a closed one has its first point again at its end. `count` and
+ * `curve_count` tell how many there are.
+ *
+ * # Safety
+ * `axis` is null or readable for 3 doubles; `points` is null or writable for `3 * capacity` doubles, `lengths` for
+ * `curve_capacity` ints, `count` and `curve_count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledGreatCircle(struct ShapeOpRuled *design,
+                                          const double *axis,
+                                          double *points,
+                                          int capacity,
+                                          int *count,
+                                          int *lengths,
+                                          int curve_capacity,
+                                          int *curve_count);
+
+/**
+ * Takes curves drawn by hand as strip boundaries, in their order along the field. Their points are moved to the
+ * nearest of the mesh, and curves are turned around if need be.
+ *
+ * - `points`: the points of all curves behind each other, `nb_points` in all.
+ * - `counts`: the number of points of each curve, `nb_counts` in all.
+ * - `is_closed`: 1 for each curve whose last point is followed by its first, else 0; null if none is.
+ * - `boundaries`: null for the defaults.
+ *
+ * Takes back boundaries and strips.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles, `counts` and `is_closed` for `nb_counts` ints.
+ * `boundaries` is null, or its `struct_size` is set and it is readable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledSetDrawnBoundaries(struct ShapeOpRuled *design,
+                                                 const double *points,
+                                                 int nb_points,
+                                                 const int *counts,
+                                                 int nb_counts,
+                                                 const int *is_closed,
+                                                 const struct shapeop_ruled_boundary_options *boundaries);
+
+/**
+ * The number of strip boundaries, or -1.
+ */
+SHAPEOP_API int shapeop_ruledBoundaryCount(struct ShapeOpRuled *design);
+
+/**
+ * Writes the points of a boundary if there is room for `capacity` of them, and their number to `count`; to `is_closed`
+ * 1 if the last point is followed by the first, and to `level` the value of the level function, or the number of the
+ * plane, the axis or the curve. The last two may be null.
+ *
+ * # Safety
+ * `points` is null or writable for `3 * capacity` doubles, `count` and `is_closed` for one int, `level` for one
+ * double.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledBoundary(struct ShapeOpRuled *design,
+                                       int boundary,
+                                       double *points,
+                                       int capacity,
+                                       int *count,
+                                       int *is_closed,
+                                       double *level);
+
+/**
+ * Writes the unit vector that the field along a boundary is most nearly orthogonal to (`axis`), and the root mean
+ * square of the sine by which it is off (`error`): 0 where rulings that begin on the boundary are parallel to a plane.
+ * Either may be null.
+ *
+ * # Safety
+ * `axis` is null or writable for 3 doubles, `error` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledBoundaryAxis(struct ShapeOpRuled *design,
+                                           int boundary,
+                                           double *axis,
+                                           double *error);
+
+/**
+ * Writes the two boundaries of each strip, before there are strips too, if there is room for `capacity` pairs, and
+ * their number to `count`.
+ *
+ * # Safety
+ * `pairs` is null or writable for `2 * capacity` ints, `count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledBoundaryPairs(struct ShapeOpRuled *design,
+                                            int *pairs,
+                                            int capacity,
+                                            int *count);
+
+/**
+ * Writes the levels between which and the next one curves split, join or end, so that no strip is there, if there is
+ * room for `capacity` of them, and their number to `count`.
+ *
+ * # Safety
+ * `levels` is null or writable for `capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledUnmatchedLevels(struct ShapeOpRuled *design,
+                                              double *levels,
+                                              int capacity,
+                                              int *count);
+
+/**
+ * Writes the curves that were too short to be boundaries if there is room for `capacity` of them, and their number to
+ * `count`: the level of each and its length, in model units. Either may be null.
+ *
+ * # Safety
+ * `levels` and `lengths` are null or writable for `capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledDroppedCurves(struct ShapeOpRuled *design,
+                                            double *levels,
+                                            double *lengths,
+                                            int capacity,
+                                            int *count);
+
+/**
+ * Makes a strip between each pair of boundaries, with rulings along asymptotic curves. A strip has `control_count`
+ * control points on each boundary, at least 4 (12 are good). With `is_shared` 1 neighbours have their common boundary
+ * as one, so that nothing can gape. Takes back strips and conditions.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledStart(struct ShapeOpRuled *design, int control_count, int is_shared);
+
+/**
+ * Writes, for each strip that was started, how many of its rulings did not meet the second boundary and went to its
+ * nearest point (`missed`), and how many ended before those before them and were moved (`moved`), if there is room for
+ * `capacity` strips, and their number to `count`. Each output but `count` may be null.
+ *
+ * # Safety
+ * `missed` and `moved` are null or writable for `capacity` ints, `count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledStarted(struct ShapeOpRuled *design,
+                                      int *missed,
+                                      int *moved,
+                                      int capacity,
+                                      int *count);
+
+/**
+ * The number of strips, or -1.
+ */
+SHAPEOP_API int shapeop_ruledStripCount(struct ShapeOpRuled *design);
+
+/**
+ * Writes the pairs of strips that are neighbours, the second boundary of one being the first of the other, if there is
+ * room for `capacity` pairs, and their number to `count`; to `is_shared`, which may be null, 1 if neighbours have
+ * their common boundary as one.
+ *
+ * # Safety
+ * `pairs` is null or writable for `2 * capacity` ints, `count` and `is_shared` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledJoints(struct ShapeOpRuled *design,
+                                     int *pairs,
+                                     int capacity,
+                                     int *count,
+                                     int *is_shared);
+
+/**
+ * Writes the control points of a strip, those of its first boundary, then those of its second, if there is room for
+ * `capacity` of each, and the number of each to `count`; to `is_closed`, which may be null, 1 if its boundaries are
+ * closed. The strip is the B-spline surface of degree 3 along its boundaries, with the knots of `shapeop_ruledKnots`,
+ * and degree 1 along its rulings; of a closed one the first three control points of each boundary follow the last.
+ *
+ * # Safety
+ * `control` is null or writable for `6 * capacity` doubles, `count` and `is_closed` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledControl(struct ShapeOpRuled *design,
+                                      int strip,
+                                      double *control,
+                                      int capacity,
+                                      int *count,
+                                      int *is_closed);
+
+/**
+ * Writes the knots along the boundaries of a strip if there is room for `capacity` of them, and their number to
+ * `count`: all of distance 1, those at both ends of an open strip four times. The parameter `u` goes from the fourth,
+ * 0, to the fourth from the end.
+ *
+ * # Safety
+ * `knots` is null or writable for `capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledKnots(struct ShapeOpRuled *design,
+                                    int strip,
+                                    double *knots,
+                                    int capacity,
+                                    int *count);
+
+/**
+ * Moves the control points of a strip, given as by `shapeop_ruledControl`; `count` is the number of each boundary's,
+ * which stays. Boundaries that neighbours share move with it. Conditions stay.
+ *
+ * # Safety
+ * `control` is null or readable for `6 * count` doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledSetControl(struct ShapeOpRuled *design,
+                                         int strip,
+                                         const double *control,
+                                         int count);
+
+/**
+ * Takes the strips that a text in JSON states (`shapeop_ruledStripsText`). Where they are as many as before, and open
+ * or closed as those, neighbours and conditions stay; otherwise each joins the next.
+ *
+ * # Safety
+ * `json` is null or ends with a zero.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledSetStripsText(struct ShapeOpRuled *design, const char *json);
+
+/**
+ * The JSON form of the strips (`docs/ruled.schema.json`): degrees, knots and control points; null if it is refused.
+ * The text is the calling thread's own, valid until that thread's next call of a `shapeop_ruled...` function that
+ * answers with a text.
+ */
+SHAPEOP_API const char *shapeop_ruledStripsText(struct ShapeOpRuled *design);
+
+/**
+ * Writes the point of a strip at `u`, from 0 to the last parameter of its boundaries, and `v`, 0 on its first boundary
+ * to 1 on its second; the derivatives there by `u` and by `v`, 6 doubles; and the unit normal, their cross product
+ * made 1 long, or 0 where they are parallel. Each output may be null.
+ *
+ * # Safety
+ * `point` and `normal` are null or writable for 3 doubles, `derivatives` for 6.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledEvaluate(struct ShapeOpRuled *design,
+                                       int strip,
+                                       double u,
+                                       double v,
+                                       double *point,
+                                       double *derivatives,
+                                       double *normal);
+
+/**
+ * Adds the condition that a boundary is in a plane, of both strips beside it. `plane` has four numbers, the normal, of
+ * any length above 0, and the offset of `normal . x = offset`; null for the plane that the boundary was cut by.
+ *
+ * A condition of the same kind for the same place is replaced. Conditions hold exactly after `shapeop_ruledOptimise`,
+ * which refuses those that contradict each other (`SO_INFEASIBLE`).
+ *
+ * # Safety
+ * `plane` is null or readable for 4 doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledConstrainPlane(struct ShapeOpRuled *design,
+                                             int boundary,
+                                             const double *plane);
+
+/**
+ * Adds the conditions that all boundaries are in the planes that they were cut by; refused if none was
+ * (`SO_NOT_INITIALISED`).
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledConstrainCutPlanes(struct ShapeOpRuled *design);
+
+/**
+ * Adds the condition that an end of a boundary is at a point: of the first (`side` 0) or second (1) boundary of an
+ * open strip its start (`end` 0) or finish (1). `point` is null for where it is now.
+ *
+ * # Safety
+ * `point` is null or readable for 3 doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledConstrainPoint(struct ShapeOpRuled *design,
+                                             int strip,
+                                             int side,
+                                             int end,
+                                             const double *point);
+
+/**
+ * Adds the conditions that all ends of the boundaries of open strips stay where they are.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledConstrainEnds(struct ShapeOpRuled *design);
+
+/**
+ * Adds the condition that the ruling at the start (`end` 0) or finish (1) of an open strip is parallel to `direction`,
+ * of any length above 0; null for the one that it has now.
+ *
+ * # Safety
+ * `direction` is null or readable for 3 doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledConstrainEndDirection(struct ShapeOpRuled *design,
+                                                    int strip,
+                                                    int end,
+                                                    const double *direction);
+
+/**
+ * Adds the condition that a strip is a conoid: that all its rulings are orthogonal to `axis`, of any length above 0;
+ * null for the axis that its rulings are most nearly orthogonal to now.
+ *
+ * # Safety
+ * `axis` is null or readable for 3 doubles.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledConstrainConoid(struct ShapeOpRuled *design, int strip, const double *axis);
+
+/**
+ * The number of conditions, or -1. A message about `conditions[k]` means the k-th that was added, from 0, of those
+ * that are left.
+ */
+SHAPEOP_API int shapeop_ruledConditionCount(struct ShapeOpRuled *design);
+
+/**
+ * Takes all conditions away.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledClearConditions(struct ShapeOpRuled *design);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledDefaultOptimiseOptions(struct shapeop_ruled_optimise_options *options);
+
+/**
+ * Brings the strips as near as they come to the mesh and to each other, under the conditions, which hold exactly
+ * afterwards. Conditions that contradict each other are refused (`SO_INFEASIBLE`): `conditions[k]` is the first that
+ * contradicts those before it.
+ *
+ * `options` is null for the defaults. `progress` may be null; what ends the call leaves the best so far. `report` is
+ * null, or its `struct_size` is set.
+ *
+ * # Safety
+ * `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many bytes.
+ * `progress` is null or a function of that signature.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledOptimise(struct ShapeOpRuled *design,
+                                       const struct shapeop_ruled_optimise_options *options,
+                                       shapeop_ruled_progress_callback progress,
+                                       void *user,
+                                       struct shapeop_ruled_optimise_report *report);
+
+/**
+ * Writes the start and each iteration of the last optimisation, 10 numbers each, if there is room for `capacity` of
+ * them, and their number to `count`: the value; its terms of proximity, gap, coverage and way; the excess over bounds,
+ * in model units; the part of the step that was taken; how far a control point moved at most; the largest deviation
+ * and the largest gap, in model units. Refused if strips changed since (`SO_NOT_INITIALISED`).
+ *
+ * # Safety
+ * `rows` is null or writable for `10 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledHistory(struct ShapeOpRuled *design, double *rows, int capacity, int *count);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledDefaultReportOptions(struct shapeop_ruled_report_options *options);
+
+/**
+ * Measures the strips against the mesh and each other: writes to `report`, whose `struct_size` must be set, what there
+ * is to say of all, and keeps the rest for `shapeop_ruledStripReport`, `shapeop_ruledJointReport` and
+ * `shapeop_ruledReportText`. `options` is null for the defaults.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is readable for so many bytes; `report` is null, or its
+ * `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledReport(struct ShapeOpRuled *design,
+                                     const struct shapeop_ruled_report_options *options,
+                                     struct shapeop_ruled_report *report);
+
+/**
+ * Writes what the last report says of a strip to `report`, whose `struct_size` must be set. Refused if strips changed
+ * since (`SO_NOT_INITIALISED`).
+ *
+ * # Safety
+ * `report` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledStripReport(struct ShapeOpRuled *design,
+                                          int strip,
+                                          struct shapeop_ruled_strip_report *report);
+
+/**
+ * Writes what the last report says of a pair of neighbours, numbered as by `shapeop_ruledJoints`, to `report`, whose
+ * `struct_size` must be set. Refused if strips changed since (`SO_NOT_INITIALISED`).
+ *
+ * # Safety
+ * `report` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledJointReport(struct ShapeOpRuled *design,
+                                          int joint,
+                                          struct shapeop_ruled_joint_report *report);
+
+/**
+ * Writes the strips that the last report calls too wide for the features of the mesh if there is room for `capacity`
+ * of them, and their number to `count`.
+ *
+ * # Safety
+ * `strips` is null or writable for `capacity` ints, `count` for one.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledTooWide(struct ShapeOpRuled *design, int *strips, int capacity, int *count);
+
+/**
+ * The JSON form of the last report (`docs/ruled-report.schema.json`), in which angles are in degrees; null if it is
+ * refused. The text is valid as long
+ * as that of `shapeop_ruledStripsText`.
+ */
+SHAPEOP_API const char *shapeop_ruledReportText(struct ShapeOpRuled *design);
+
+/**
+ * Writes strips as a mesh of quads whose edges across are rulings: the strip `strip`, or all (`SHAPEOP_RULED_ALL`),
+ * with `columns_per_span` columns in each span and `rows` rows of points, 2 or more. Points are written if there is
+ * room for `capacity` of them, and their number to `count`; faces, four points each, if there is room for
+ * `face_capacity` of them, and their number to `face_count`. `normals`, the unit normals at the points, and
+ * `strip_of`, the strip of each face, may be null. Strips share no points.
+ *
+ * # Safety
+ * `points` and `normals` are null or writable for `3 * capacity` doubles, `faces` for `4 * face_capacity` ints,
+ * `strip_of` for `face_capacity`, `count` and `face_count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledMesh(struct ShapeOpRuled *design,
+                                   int strip,
+                                   int columns_per_span,
+                                   int rows,
+                                   double *points,
+                                   double *normals,
+                                   int capacity,
+                                   int *count,
+                                   int *faces,
+                                   int *strip_of,
+                                   int face_capacity,
+                                   int *face_count);
+
+/**
+ * As `shapeop_ruledMesh`, for what is left of strips within the boundary of the design's mesh, as triangles:
+ * `columns_per_span` columns in each span, whose edges across are rulings; `faces` has three points each. The line
+ * along which strips are cut is at most `tolerance` times the mesh's diagonal, above 0 and at most 0.01, from its
+ * boundary. What was trimmed is kept until strips change, so that asking for the numbers first costs little.
+ *
+ * # Safety
+ * `points` and `normals` are null or writable for `3 * capacity` doubles, `faces` for `3 * face_capacity` ints,
+ * `strip_of` for `face_capacity`, `count` and `face_count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledTrimmedMesh(struct ShapeOpRuled *design,
+                                          int strip,
+                                          int columns_per_span,
+                                          double tolerance,
+                                          double *points,
+                                          double *normals,
+                                          int capacity,
+                                          int *count,
+                                          int *faces,
+                                          int *strip_of,
+                                          int face_capacity,
+                                          int *face_count);
+
+/**
+ * Writes rulings of a strip or of all (`SHAPEOP_RULED_ALL`), `rulings` of each, evenly spread over its parameter; with
+ * `is_trimmed` 1 what is left of them within the boundary of the design's mesh: several pieces of one ruling, or none.
+ * For each piece `ends` has its two points, from the first boundary to the second, `parameters` its parameter `u` and
+ * `strip_of` its strip, if there is room for `capacity` pieces; `count` is their number. Each output but `count` may
+ * be null.
+ *
+ * # Safety
+ * `ends` is null or writable for `6 * capacity` doubles, `parameters` for `capacity`, `strip_of` for `capacity` ints,
+ * `count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledRulings(struct ShapeOpRuled *design,
+                                      int strip,
+                                      int rulings,
+                                      int is_trimmed,
+                                      double *ends,
+                                      double *parameters,
+                                      int *strip_of,
+                                      int capacity,
+                                      int *count);
+
+/**
+ * The strips as B-spline surfaces of a Wavefront OBJ file, which CAD programs read; null if it is refused. The text is
+ * valid as long as that of `shapeop_ruledStripsText`.
+ */
+SHAPEOP_API const char *shapeop_ruledSurfacesObj(struct ShapeOpRuled *design);
+
+/**
+ * Trimmed rulings, `rulings` of each strip, as lines of a Wavefront OBJ file; null if it is refused. The text is valid
+ * as long as that of `shapeop_ruledStripsText`.
+ */
+SHAPEOP_API const char *shapeop_ruledRulingsObj(struct ShapeOpRuled *design, int rulings);
+
+/**
+ * Trimmed rulings, `rulings` of each strip, as a table of comma-separated values, with their ends and lengths; null if
+ * it is refused. The text is valid as long as that of `shapeop_ruledStripsText`.
+ */
+SHAPEOP_API const char *shapeop_ruledRulingsCsv(struct ShapeOpRuled *design, int rulings);
+
+/**
+ * Writes what zebra stripes show at points of any surface, from -1, the middle of a dark stripe, to 1, the middle of a
+ * light one: reflections of light tubes along `direction`, `nb_stripes` of them around a full turn, turned about it by
+ * `turn` radians. `eye` is a point, or, with `is_parallel` 1, the direction in which all eyes look. Where normals are
+ * continuous, so are stripes; where a surface has a kink they break off.
+ *
+ * # Safety
+ * `points` and `normals` are null or readable for `3 * nb_points` doubles, `eye` and `direction` for 3; `out` is null
+ * or writable for `nb_points` doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledZebra(const double *points,
+                                    const double *normals,
+                                    int nb_points,
+                                    const double *eye,
+                                    int is_parallel,
+                                    const double *direction,
+                                    int nb_stripes,
+                                    double turn,
+                                    double *out);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set; the thickness is 0, and must be set too.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_ruledDefaultPlankOptions(struct shapeop_ruled_plank_options *options);
+
+/**
+ * Writes the unit vector that is most nearly orthogonal to all rulings of a strip, so that the strip rises along it,
+ * and the greatest angle of a control ruling to the plane across it, in radians: 0 of a conoidal strip. Either may be
+ * null.
+ *
+ * # Safety
+ * `axis` is null or writable for 3 doubles, `deviation` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledStripAxis(struct ShapeOpRuled *design,
+                                        int strip,
+                                        double *axis,
+                                        double *deviation);
+
+/**
+ * Cuts a conoidal strip into planks of constant thickness across `axis`, of any length above 0; null for its own.
+ * Writes to `planks`, whose `struct_size` must be set, what there is to say of all, and keeps the rest for
+ * `shapeop_ruledPlank`, `shapeop_ruledDowels`, `shapeop_ruledPlanksText` and `shapeop_ruledPlanksSvg`. A strip that is
+ * not conoidal is refused (`SO_NOT_PLANAR`), as is one that folds back along the axis (`SO_DEGENERATE`).
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is readable for so many bytes; `axis` is null or readable for
+ * 3 doubles; `planks` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledCutPlanks(struct ShapeOpRuled *design,
+                                        int strip,
+                                        const struct shapeop_ruled_plank_options *options,
+                                        const double *axis,
+                                        struct shapeop_ruled_planks *planks);
+
+/**
+ * Writes one of the planks that were cut last to `plank`, whose `struct_size` must be set. Refused if strips changed
+ * since (`SO_NOT_INITIALISED`). The other outputs may be null:
+ *
+ * - `frame`: a point of its lower face, the unit vector along the plank, from the strip's first boundary to its
+ *   second, and the unit vector across it, 9 doubles. Flat coordinates are along these from the point.
+ * - `outline`: the four corners in flat coordinates, counterclockwise seen against the axis, 8 doubles.
+ * - `rulings`: the ends of the ruling in the lower face, then of that in the upper, in flat coordinates, 8 doubles.
+ *
+ * # Safety
+ * `plank` is null, or its `struct_size` is set and it is writable for so many bytes; `frame` is null or writable for 9
+ * doubles, `outline` and `rulings` for 8.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledPlank(struct ShapeOpRuled *design,
+                                    int index,
+                                    struct shapeop_ruled_plank *plank,
+                                    double *frame,
+                                    double *outline,
+                                    double *rulings);
+
+/**
+ * Writes the points of the strip's first (`side` 0) or second (1) boundary at the cuts between the planks that were
+ * cut last, ends included, if there is room for `capacity` of them, and their number to `count`: dowels lie along
+ * these.
+ *
+ * # Safety
+ * `points` is null or writable for `3 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_ruledDowels(struct ShapeOpRuled *design,
+                                     int side,
+                                     double *points,
+                                     int capacity,
+                                     int *count);
+
+/**
+ * The JSON form of the planks that were cut last (`docs/ruled-planks.schema.json`), in which angles are in degrees;
+ * null if it is refused. The text is valid as long as that of `shapeop_ruledStripsText`.
+ */
+SHAPEOP_API const char *shapeop_ruledPlanksText(struct ShapeOpRuled *design);
+
+/**
+ * The planks that were cut last, drawn in true scale as SVG, with their numbers, sizes and angles: `name` stands above
+ * them, `millimetres` are in a model unit. Null if it is refused. The text is valid as long as that of
+ * `shapeop_ruledStripsText`.
+ *
+ * # Safety
+ * `name` is null or ends with a zero.
+ */
+SHAPEOP_API const char *shapeop_ruledPlanksSvg(struct ShapeOpRuled *design, const char *name, double millimetres);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -129,3 +129,72 @@ pub(super) fn faces(name: &str, indices: &[c_int], counts: &[c_int], point_count
     }
     Ok(faces)
 }
+
+/// # Safety
+/// `data` is null or readable for `3 * count` doubles.
+pub(super) unsafe fn points(name: &str, data: *const f64, count_name: &str, count: c_int) -> Result<Vec<DVec3>> {
+    // SAFETY: the caller vouches for the array.
+    let coordinates = unsafe { slice(name, data, xyz_length(count_name, count)?)? };
+    Ok(coordinates.chunks_exact(3).map(DVec3::from_slice).collect())
+}
+
+/// # Safety
+/// `data` is null or readable for `count` doubles.
+pub(super) unsafe fn numbers(name: &str, data: *const f64, count_name: &str, count: c_int) -> Result<Vec<f64>> {
+    // SAFETY: the caller vouches for the array.
+    Ok(unsafe { slice(name, data, length(count_name, count)?)? }.to_vec())
+}
+
+/// A finite vector.
+///
+/// # Safety
+/// `data` is null or readable for 3 doubles.
+pub(super) unsafe fn finite_vector(name: &str, data: *const f64) -> Result<DVec3> {
+    // SAFETY: the caller vouches for 3 doubles.
+    let vector = unsafe { vector(name, data)? };
+    if vector.is_finite() {
+        return Ok(vector);
+    }
+    Err(Error::new(Status::InvalidValue, format!("expected finite numbers, found {vector}")).at(name))
+}
+
+/// A finite vector, or none for null.
+///
+/// # Safety
+/// `data` is null or readable for 3 doubles.
+pub(super) unsafe fn optional_vector(name: &str, data: *const f64) -> Result<Option<DVec3>> {
+    if data.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: the caller vouches for 3 doubles.
+    unsafe { finite_vector(name, data) }.map(Some)
+}
+
+/// 0 or 1.
+pub(super) fn truth(name: &str, value: c_int) -> Result<bool> {
+    match value {
+        0 | 1 => Ok(value == 1),
+        _ => Err(Error::new(Status::InvalidValue, format!("expected 0 or 1, found {value}")).at(name)),
+    }
+}
+
+/// An index below `count`.
+pub(super) fn index(name: &str, value: c_int, count: usize) -> Result<usize> {
+    usize::try_from(value).ok().filter(|&index| index < count).ok_or_else(|| {
+        Error::new(Status::IndexOutOfRange, format!("expected an index below {count}, found {value}")).at(name)
+    })
+}
+
+/// `x0 y0 z0 x1 ...`
+pub(super) fn coordinates(points: &[DVec3]) -> Vec<f64> {
+    points.iter().flat_map(DVec3::to_array).collect()
+}
+
+/// The error with another argument's name in its place.
+pub(super) fn renamed(error: Error, from: &str, to: &str) -> Error {
+    let place = error.place().to_owned();
+    match place.strip_prefix(from) {
+        Some(rest) if rest.is_empty() || rest.starts_with('[') => error.with_place(format!("{to}{rest}")),
+        _ => error,
+    }
+}

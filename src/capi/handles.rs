@@ -1,4 +1,4 @@
-//! Handles: small integers that name a solver or a surface, or are recognised as naming none.
+//! Handles: small integers that name a solver, a surface or a design, or are recognised as naming none.
 //!
 //! A handle is `generation << 16 | index`: nonzero, below 2^31, so it survives a caller that cuts it to a C `int`. It
 //! is read back from the low 32 bits alone, because the upper half of a register that was loaded as an `int` is not
@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use super::{current, messages::Message};
 use crate::error::{Error, Result, Status};
 use crate::geometry::canal::surface::SuperCanal;
+use crate::geometry::ruled::design::Draft;
 use crate::solver::Solver;
 
 /// A solver. What points to it is no address but a small integer, a handle.
@@ -56,6 +57,7 @@ impl Handle {
 pub(super) enum Object {
     Solver(Box<Solver>),
     Canal(Box<SuperCanal>),
+    Ruled(Box<Draft>),
 }
 
 impl Object {
@@ -64,6 +66,7 @@ impl Object {
         match self {
             Self::Solver(_) => Solver::NAME,
             Self::Canal(_) => SuperCanal::NAME,
+            Self::Ruled(_) => Draft::NAME,
         }
     }
 }
@@ -94,6 +97,15 @@ impl Kind for SuperCanal {
 
     fn of(object: &mut Object) -> Option<&mut Self> {
         if let Object::Canal(surface) = object { Some(surface) } else { None }
+    }
+}
+
+impl Kind for Draft {
+    const NAME: &'static str = "design";
+    const ARGUMENT: &'static str = "design";
+
+    fn of(object: &mut Object) -> Option<&mut Self> {
+        if let Object::Ruled(draft) = object { Some(draft) } else { None }
     }
 }
 

@@ -22,11 +22,13 @@ mod explore;
 mod forces;
 mod handles;
 mod messages;
+mod outputs;
 mod points;
 mod problem;
 mod references;
 mod registry;
 mod report;
+mod ruled;
 mod solver;
 mod structs;
 
@@ -41,6 +43,7 @@ pub use problem::*;
 pub use references::*;
 pub use registry::*;
 pub use report::*;
+pub use ruled::*;
 pub use solver::*;
 
 use std::any::Any;

@@ -262,7 +262,7 @@ fn named<T: Copy>(argument: &str, list: &[(&str, T)], name: &str, things: &str) 
 ///
 /// # Safety
 /// Each array is null or readable for its number of values.
-unsafe fn mesh(
+pub(super) unsafe fn mesh(
     points: *const f64,
     nb_points: c_int,
     face_indices: *const c_int,

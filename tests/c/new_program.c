@@ -150,11 +150,50 @@ static void surfaces(void) {
     check(shapeop_canalUndo(torus) == -1, "a deleted surface is refused");
 }
 
+static void strips(void) {
+    enum { SIDE = 13 };
+    double points[3 * SIDE * SIDE], control[6 * 6], point[3];
+    int quads[4 * (SIDE - 1) * (SIDE - 1)], four = 4, count = 0, i, j, k = 0;
+    shapeop_ruled_optimise_report found;
+    ShapeOpRuled *design;
+    for (j = 0; j < SIDE; ++j) {
+        for (i = 0; i < SIDE; ++i) {
+            double *p = points + 3 * (SIDE * j + i);
+            p[0] = 2.0 * i / (SIDE - 1) - 1;
+            p[1] = 2.0 * j / (SIDE - 1) - 1;
+            p[2] = p[0] * p[1];
+            if (i + 1 < SIDE && j + 1 < SIDE) {
+                quads[k++] = SIDE * j + i;
+                quads[k++] = SIDE * j + i + 1;
+                quads[k++] = SIDE * j + i + 1 + SIDE;
+                quads[k++] = SIDE * j + i + SIDE;
+            }
+        }
+    }
+    design = shapeop_ruledCreate(points, SIDE * SIDE, quads, k, &four, 1, NULL);
+    check(design != NULL, "ruledCreate");
+    check(shapeop_ruledStart(design, 6, 0) == SO_NO_SOLUTION, "no strips without boundaries");
+    check(strstr(shapeop_lastError(NULL), "boundaries") != NULL, "the message names the boundaries");
+    check(shapeop_ruledSetLevelBoundaries(design, NULL, 2, 0, NULL, 0, NULL, NULL, NULL) == SO_SUCCESS, "boundaries");
+    check(shapeop_ruledStart(design, 6, 0) == SO_SUCCESS, "ruledStart");
+    memset(&found, 0, sizeof found);
+    found.struct_size = sizeof found;
+    check(shapeop_ruledOptimise(design, NULL, NULL, NULL, &found) == SO_SUCCESS, "ruledOptimise");
+    check(found.after < found.before && found.largest_deviation < 0.02, "strips near the saddle");
+    check(shapeop_ruledControl(design, 1, NULL, 0, &count, NULL) == SO_SUCCESS && count == 6, "control points");
+    check(shapeop_ruledControl(design, 1, control, count, &count, NULL) == SO_SUCCESS, "ruledControl");
+    check(shapeop_ruledEvaluate(design, 1, 0, 1, point, NULL, NULL) == SO_SUCCESS, "ruledEvaluate");
+    check(memcmp(point, control + 18, sizeof point) == 0, "a strip begins at its first control points");
+    shapeop_ruledDelete(design);
+    check(shapeop_ruledStripCount(design) == -1, "a deleted design is refused");
+}
+
 int main(void) {
     printf("shapeop %s\n", shapeop_version());
     list_types();
     planarise();
     mistakes();
     surfaces();
+    strips();
     return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

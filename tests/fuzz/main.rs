@@ -8,6 +8,7 @@
 mod calls;
 mod canal;
 mod canal_shapes;
+mod ruled;
 
 use std::ffi::{CString, c_int, c_void};
 use std::ptr;

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use crate::{declarations, shell};
 
 /// The sources of the C ABI, in the order in which the header groups functions.
-const SOURCES: [&str; 22] = [
+const SOURCES: [&str; 31] = [
     "errors",
     "handles",
     "solver",
@@ -31,6 +31,15 @@ const SOURCES: [&str; 22] = [
     "canal/revolution",
     "canal/families",
     "canal/parts",
+    "ruled/design",
+    "ruled/levels",
+    "ruled/boundaries",
+    "ruled/strips",
+    "ruled/conditions",
+    "ruled/optimise",
+    "ruled/report",
+    "ruled/output",
+    "ruled/planks",
 ];
 
 /// Writes the header and the declarations for other languages, or only compares.

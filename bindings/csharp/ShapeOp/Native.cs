@@ -223,6 +223,75 @@ namespace ShapeOp
         Combescure = 2,
     }
 
+    /// <summary>What was found at a point of a mesh.</summary>
+    public enum RuledPoint
+    {
+        /// <summary>Two asymptotic directions.</summary>
+        Good = 0,
+        /// <summary>The surface is flat or positively curved there: it has none.</summary>
+        NotNegative = 1,
+        /// <summary>Its neighbours do not determine curvatures.</summary>
+        NotFitted = 2,
+    }
+
+    /// <summary>Why an asymptotic curve ends.</summary>
+    public enum RuledEnd
+    {
+        /// <summary>At the boundary of the mesh.</summary>
+        Boundary = 0,
+        /// <summary>Where the direction is not known.</summary>
+        Unknown = 1,
+        /// <summary>At the length asked for.</summary>
+        Length = 2,
+        /// <summary>After the most steps.</summary>
+        Steps = 3,
+    }
+
+    /// <summary>What strip boundaries are to be.</summary>
+    public enum RuledLevels
+    {
+        /// <summary>Orthogonal to the rulings, at distances of one length where that is possible.</summary>
+        Orthogonal = 0,
+        /// <summary>Orthogonal to the rulings, at whatever distances.</summary>
+        Direction = 1,
+        /// <summary>At constant distances.</summary>
+        Equidistant = 2,
+        /// <summary>Geodesic: the straightest on the surface.</summary>
+        Geodesic = 3,
+        /// <summary>Such that the rulings along each are parallel to a plane.</summary>
+        Conoidal = 4,
+    }
+
+    /// <summary>What the spherical image of a field is like.</summary>
+    public enum RuledImage
+    {
+        /// <summary>It was not asked for: the weight conoidal was 0.</summary>
+        None = 0,
+        /// <summary>It covers a part of the sphere.</summary>
+        Regular = 1,
+        /// <summary>It covers a part of the sphere twice.</summary>
+        Folded = 2,
+        /// <summary>It collapsed to a great circle: every strip is conoidal, and the weight was not used.</summary>
+        GreatCircle = 3,
+        /// <summary>It collapsed to another curve: the surface is ruled, and the weight was not used.</summary>
+        Curve = 4,
+    }
+
+    /// <summary>Why a run stopped.</summary>
+    public enum RuledStop
+    {
+        /// <summary>There was nothing to iterate.</summary>
+        None = 0,
+        /// <summary>Steps or decreases became small.</summary>
+        Converged = 1,
+        /// <summary>All iterations were used.</summary>
+        Iterations = 2,
+        /// <summary>No step lowers the value: it is as good as rounding allows.</summary>
+        LineSearch = 3,
+        /// <summary>The callback said so.</summary>
+        Cancelled = 4,
+    }
+
     internal static class Native
     {
         internal const int AbiVersion = 1;
@@ -438,11 +507,234 @@ namespace ShapeOp
             internal double stress_residual_fine;
         }
 
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_options
+        {
+            internal uint struct_size;
+            internal int family;
+            internal int allow_cut;
+            internal uint least_neighbours;
+            internal double flatness;
+            internal double max_mask;
+            internal double hint_x;
+            internal double hint_y;
+            internal double hint_z;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_level_options
+        {
+            internal uint struct_size;
+            internal uint max_iterations;
+            internal int allow_folds;
+            internal uint reserved;
+            internal double orthogonal;
+            internal double direction;
+            internal double equidistant;
+            internal double geodesic;
+            internal double conoidal;
+            internal double laplace;
+            internal double relative_decrease;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_level_report
+        {
+            internal uint struct_size;
+            internal RuledStop stop;
+            internal uint iterations;
+            internal uint critical_count;
+            internal RuledImage image;
+            internal uint image_unused_count;
+            internal double least_slope;
+            internal double greatest_slope;
+            internal double image_extent;
+            internal double image_folded;
+            internal double image_flatness;
+            internal double image_axis_x;
+            internal double image_axis_y;
+            internal double image_axis_z;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_boundary_options
+        {
+            internal uint struct_size;
+            internal int extends;
+            internal int overshoots;
+            internal uint reserved;
+            internal double least_length;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_progress
+        {
+            internal uint struct_size;
+            internal uint iteration;
+            internal double fraction;
+            internal double value;
+            internal double largest_deviation;
+            internal double largest_gap;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_optimise_options
+        {
+            internal uint struct_size;
+            internal uint max_iterations;
+            internal uint samples_along;
+            internal uint samples_across;
+            internal double proximity;
+            internal double beyond;
+            internal double gap;
+            internal double coverage;
+            internal double thin_plate;
+            internal double proximal;
+            internal double largest_deviation;
+            internal double least_width;
+            internal double tolerance;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_optimise_report
+        {
+            internal uint struct_size;
+            internal RuledStop stop;
+            internal uint iterations;
+            internal uint free_count;
+            internal double before;
+            internal double after;
+            internal double proximity;
+            internal double gap;
+            internal double coverage;
+            internal double way;
+            internal double excess;
+            internal double largest_deviation;
+            internal double largest_gap;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_report_options
+        {
+            internal uint struct_size;
+            internal uint samples_along;
+            internal uint samples_across;
+            internal uint columns_per_span;
+            internal double feature_ratio;
+            internal double trim_tolerance;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_report
+        {
+            internal uint struct_size;
+            internal uint strip_count;
+            internal uint joint_count;
+            internal uint too_wide_count;
+            internal double largest_deviation;
+            internal double rms_deviation;
+            internal double largest_uncovered;
+            internal double rms_uncovered;
+            internal double reference_area;
+            internal double trimmed_area;
+            internal double coverage;
+            internal double largest_gap;
+            internal double mean_gap;
+            internal double largest_kink;
+            internal double mean_kink;
+            internal double width_variation;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_strip_report
+        {
+            internal uint struct_size;
+            internal int is_too_wide;
+            internal double largest_deviation;
+            internal double at_x;
+            internal double at_y;
+            internal double at_z;
+            internal double rms_deviation;
+            internal double area;
+            internal double trimmed_area;
+            internal double least_width;
+            internal double mean_width;
+            internal double greatest_width;
+            internal double width_variation;
+            internal double width_over_feature;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_joint_report
+        {
+            internal uint struct_size;
+            internal int first;
+            internal int second;
+            internal uint gap_count;
+            internal uint kink_count;
+            internal uint reserved;
+            internal double largest_gap;
+            internal double mean_gap;
+            internal double gap_x;
+            internal double gap_y;
+            internal double gap_z;
+            internal double largest_kink;
+            internal double mean_kink;
+            internal double kink_x;
+            internal double kink_y;
+            internal double kink_z;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_plank_options
+        {
+            internal uint struct_size;
+            internal int has_first_cut;
+            internal double thickness;
+            internal double depth;
+            internal double first_cut;
+            internal double tolerance;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_planks
+        {
+            internal uint struct_size;
+            internal uint plank_count;
+            internal double axis_x;
+            internal double axis_y;
+            internal double axis_z;
+            internal double thickness;
+            internal double deviation;
+            internal double stock_area;
+            internal double offcut;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_ruled_plank
+        {
+            internal uint struct_size;
+            internal uint reserved;
+            internal double lower;
+            internal double upper;
+            internal double filled;
+            internal double first_u;
+            internal double last_u;
+            internal double length;
+            internal double width;
+            internal double first_end_angle;
+            internal double second_end_angle;
+            internal double offcut;
+        }
+
         [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
         internal delegate int shapeop_progress_callback(ref shapeop_progress progress, IntPtr user);
 
         [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
         internal delegate int shapeop_canal_progress_callback(ref shapeop_canal_progress progress, IntPtr user);
+
+        [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+        internal delegate int shapeop_ruled_progress_callback(ref shapeop_ruled_progress progress, IntPtr user);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern IntPtr shapeop_version();
@@ -1536,5 +1828,462 @@ namespace ShapeOp
             double[] axes,
             double thickness,
             double height);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledDefaultOptions(ref shapeop_ruled_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern RuledHandle shapeop_ruledCreate(
+            double[] points,
+            int nbPoints,
+            int[] faceIndices,
+            int nbFaceIndices,
+            int[] counts,
+            int nbCounts,
+            ref shapeop_ruled_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern RuledHandle shapeop_ruledCopy(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern void shapeop_ruledDelete(IntPtr design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledSelectFamily(
+            RuledHandle design,
+            int family,
+            double[] hint,
+            int allowCut);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledTriangles(
+            RuledHandle design,
+            int[] triangles,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledCurvatures(
+            RuledHandle design,
+            double[] principal,
+            double[] directions,
+            double[] normals,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledDirections(
+            RuledHandle design,
+            int family,
+            double[] directions,
+            int[] status,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledField(
+            RuledHandle design,
+            double[] directions,
+            int[] isKnown,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledFlips(RuledHandle design, int[] edges, int capacity, int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledTrace(
+            RuledHandle design,
+            double[] seed,
+            int isBackward,
+            double step,
+            double length,
+            double[] points,
+            int capacity,
+            int[] count,
+            int[] end);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledDefaultLevelOptions(
+            int kind,
+            ref shapeop_ruled_level_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledSetLevelBoundaries(
+            RuledHandle design,
+            ref shapeop_ruled_level_options options,
+            int count,
+            double width,
+            double[] values,
+            int nbValues,
+            ref shapeop_ruled_boundary_options boundaries,
+            shapeop_ruled_progress_callback progress,
+            IntPtr user);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledSetLevels(
+            RuledHandle design,
+            int count,
+            double width,
+            double[] values,
+            int nbValues,
+            ref shapeop_ruled_boundary_options boundaries);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledLevelValues(
+            RuledHandle design,
+            double[] values,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledLevelHistory(
+            RuledHandle design,
+            double[] values,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledCriticalPoints(
+            RuledHandle design,
+            int[] points,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledLevelReport(
+            RuledHandle design,
+            ref shapeop_ruled_level_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledDefaultBoundaryOptions(ref shapeop_ruled_boundary_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledSetPlanarBoundaries(
+            RuledHandle design,
+            double[] planes,
+            int nbPlanes,
+            double leastAngle,
+            int refusesOblique,
+            ref shapeop_ruled_boundary_options boundaries,
+            double[] angles);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledSetGreatCircleBoundaries(
+            RuledHandle design,
+            double[] axes,
+            int nbAxes,
+            ref shapeop_ruled_boundary_options boundaries);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledGreatCircle(
+            RuledHandle design,
+            double[] axis,
+            double[] points,
+            int capacity,
+            int[] count,
+            int[] lengths,
+            int curveCapacity,
+            int[] curveCount);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledSetDrawnBoundaries(
+            RuledHandle design,
+            double[] points,
+            int nbPoints,
+            int[] counts,
+            int nbCounts,
+            int[] isClosed,
+            ref shapeop_ruled_boundary_options boundaries);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_ruledBoundaryCount(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledBoundary(
+            RuledHandle design,
+            int boundary,
+            double[] points,
+            int capacity,
+            int[] count,
+            int[] isClosed,
+            double[] level);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledBoundaryAxis(
+            RuledHandle design,
+            int boundary,
+            double[] axis,
+            double[] error);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledBoundaryPairs(
+            RuledHandle design,
+            int[] pairs,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledUnmatchedLevels(
+            RuledHandle design,
+            double[] levels,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledDroppedCurves(
+            RuledHandle design,
+            double[] levels,
+            double[] lengths,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledStart(RuledHandle design, int controlCount, int isShared);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledStarted(
+            RuledHandle design,
+            int[] missed,
+            int[] moved,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_ruledStripCount(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledJoints(
+            RuledHandle design,
+            int[] pairs,
+            int capacity,
+            int[] count,
+            int[] isShared);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledControl(
+            RuledHandle design,
+            int strip,
+            double[] control,
+            int capacity,
+            int[] count,
+            int[] isClosed);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledKnots(
+            RuledHandle design,
+            int strip,
+            double[] knots,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledSetControl(
+            RuledHandle design,
+            int strip,
+            double[] control,
+            int count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledSetStripsText(RuledHandle design, byte[] json);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_ruledStripsText(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledEvaluate(
+            RuledHandle design,
+            int strip,
+            double u,
+            double v,
+            double[] point,
+            double[] derivatives,
+            double[] normal);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledConstrainPlane(RuledHandle design, int boundary, double[] plane);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledConstrainCutPlanes(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledConstrainPoint(
+            RuledHandle design,
+            int strip,
+            int side,
+            int end,
+            double[] point);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledConstrainEnds(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledConstrainEndDirection(
+            RuledHandle design,
+            int strip,
+            int end,
+            double[] direction);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledConstrainConoid(RuledHandle design, int strip, double[] axis);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_ruledConditionCount(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledClearConditions(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledDefaultOptimiseOptions(ref shapeop_ruled_optimise_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledOptimise(
+            RuledHandle design,
+            ref shapeop_ruled_optimise_options options,
+            shapeop_ruled_progress_callback progress,
+            IntPtr user,
+            ref shapeop_ruled_optimise_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledHistory(
+            RuledHandle design,
+            double[] rows,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledDefaultReportOptions(ref shapeop_ruled_report_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledReport(
+            RuledHandle design,
+            ref shapeop_ruled_report_options options,
+            ref shapeop_ruled_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledStripReport(
+            RuledHandle design,
+            int strip,
+            ref shapeop_ruled_strip_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledJointReport(
+            RuledHandle design,
+            int joint,
+            ref shapeop_ruled_joint_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledTooWide(
+            RuledHandle design,
+            int[] strips,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_ruledReportText(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledMesh(
+            RuledHandle design,
+            int strip,
+            int columnsPerSpan,
+            int rows,
+            double[] points,
+            double[] normals,
+            int capacity,
+            int[] count,
+            int[] faces,
+            int[] stripOf,
+            int faceCapacity,
+            int[] faceCount);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledTrimmedMesh(
+            RuledHandle design,
+            int strip,
+            int columnsPerSpan,
+            double tolerance,
+            double[] points,
+            double[] normals,
+            int capacity,
+            int[] count,
+            int[] faces,
+            int[] stripOf,
+            int faceCapacity,
+            int[] faceCount);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledRulings(
+            RuledHandle design,
+            int strip,
+            int rulings,
+            int isTrimmed,
+            double[] ends,
+            double[] parameters,
+            int[] stripOf,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_ruledSurfacesObj(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_ruledRulingsObj(RuledHandle design, int rulings);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_ruledRulingsCsv(RuledHandle design, int rulings);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledZebra(
+            double[] points,
+            double[] normals,
+            int nbPoints,
+            double[] eye,
+            int isParallel,
+            double[] direction,
+            int nbStripes,
+            double turn,
+            double[] @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledDefaultPlankOptions(ref shapeop_ruled_plank_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledStripAxis(
+            RuledHandle design,
+            int strip,
+            double[] axis,
+            double[] deviation);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledCutPlanks(
+            RuledHandle design,
+            int strip,
+            ref shapeop_ruled_plank_options options,
+            double[] axis,
+            ref shapeop_ruled_planks planks);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledPlank(
+            RuledHandle design,
+            int index,
+            ref shapeop_ruled_plank plank,
+            double[] frame,
+            double[] outline,
+            double[] rulings);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_ruledDowels(
+            RuledHandle design,
+            int side,
+            double[] points,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_ruledPlanksText(RuledHandle design);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_ruledPlanksSvg(RuledHandle design, byte[] name, double millimetres);
     }
 }

@@ -53,6 +53,11 @@ def test_every_type_can_be_added_by_what_the_registry_says_of_it() -> None:
         (shapeop.canal.Spacing, "SO_CANAL_SPACING_"),
         (shapeop.canal.Step, "SO_CANAL_STEP_"),
         (shapeop.canal.Stop, "SO_CANAL_STOP_"),
+        (shapeop.ruled.PointStatus, "SO_RULED_POINT_"),
+        (shapeop.ruled.TraceEnd, "SO_RULED_END_"),
+        (shapeop.ruled.Levels, "SO_RULED_LEVELS_"),
+        (shapeop.ruled.Image, "SO_RULED_IMAGE_"),
+        (shapeop.ruled.Stop, "SO_RULED_STOP_"),
     ],
 )
 def test_no_member_of_an_enum_is_missing(kind: type[IntEnum], prefix: str) -> None:
@@ -62,7 +67,7 @@ def test_no_member_of_an_enum_is_missing(kind: type[IntEnum], prefix: str) -> No
 
 def test_no_error_code_is_missing() -> None:
     solvers = ("SO_OUTCOME_", "SO_ACCELERATION_", "SO_LINEAR_SOLVER_", "SO_PROJECTION_", "SO_FAIRNESS_", "SO_SUCCESS")
-    enums = (*solvers, "SO_CANAL_")
+    enums = (*solvers, "SO_CANAL_", "SO_RULED_")
     names = [name for name in vars(_abi) if name.startswith("SO_") and not name.startswith(enums)]
     assert {code.name for code in shapeop.ErrorCode} == {name[len("SO_") :] for name in names}
     for code in shapeop.ErrorCode:

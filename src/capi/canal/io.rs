@@ -5,8 +5,11 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::super::arguments::{self, check_pointer, length, slice, xyz_length};
-use super::super::c_count;
+use super::super::arguments::{self, length, slice};
+pub(super) use super::super::arguments::{
+    coordinates, finite_vector as vector, index, numbers, optional_vector, points, renamed, truth,
+};
+pub(super) use super::super::outputs::Outputs;
 use super::smoothing::{shapeop_canal_progress, shapeop_canal_progress_callback};
 use crate::error::{Error, Result, Status};
 use crate::geometry::canal::closing;
@@ -18,61 +21,6 @@ use crate::mesh::{Grid, Mesh};
 
 /// The largest difference of a frame's tangents from unit vectors that are orthogonal.
 pub(super) const SLACK: f64 = 1e-9;
-
-/// # Safety
-/// `data` is null or readable for `3 * count` doubles.
-pub(super) unsafe fn points(name: &str, data: *const f64, count_name: &str, count: c_int) -> Result<Vec<DVec3>> {
-    // SAFETY: the caller vouches for the array.
-    let coordinates = unsafe { slice(name, data, xyz_length(count_name, count)?)? };
-    Ok(coordinates.chunks_exact(3).map(DVec3::from_slice).collect())
-}
-
-/// # Safety
-/// `data` is null or readable for `count` doubles.
-pub(super) unsafe fn numbers(name: &str, data: *const f64, count_name: &str, count: c_int) -> Result<Vec<f64>> {
-    // SAFETY: the caller vouches for the array.
-    Ok(unsafe { slice(name, data, length(count_name, count)?)? }.to_vec())
-}
-
-/// A finite vector.
-///
-/// # Safety
-/// `data` is null or readable for 3 doubles.
-pub(super) unsafe fn vector(name: &str, data: *const f64) -> Result<DVec3> {
-    // SAFETY: the caller vouches for 3 doubles.
-    let vector = unsafe { arguments::vector(name, data)? };
-    if vector.is_finite() {
-        return Ok(vector);
-    }
-    Err(Error::new(Status::InvalidValue, format!("expected finite numbers, found {vector}")).at(name))
-}
-
-/// A finite vector, or none for null.
-///
-/// # Safety
-/// `data` is null or readable for 3 doubles.
-pub(super) unsafe fn optional_vector(name: &str, data: *const f64) -> Result<Option<DVec3>> {
-    if data.is_null() {
-        return Ok(None);
-    }
-    // SAFETY: the caller vouches for 3 doubles.
-    unsafe { vector(name, data) }.map(Some)
-}
-
-/// 0 or 1.
-pub(super) fn truth(name: &str, value: c_int) -> Result<bool> {
-    match value {
-        0 | 1 => Ok(value == 1),
-        _ => Err(Error::new(Status::InvalidValue, format!("expected 0 or 1, found {value}")).at(name)),
-    }
-}
-
-/// An index below `count`.
-pub(super) fn index(name: &str, value: c_int, count: usize) -> Result<usize> {
-    usize::try_from(value).ok().filter(|&index| index < count).ok_or_else(|| {
-        Error::new(Status::IndexOutOfRange, format!("expected an index below {count}, found {value}")).at(name)
-    })
-}
 
 /// The most points of a net that is made here: more would exhaust a machine.
 const MOST_POINTS: usize = 1 << 22;
@@ -150,10 +98,6 @@ pub(super) fn frame_numbers(frames: &[Frame]) -> Vec<f64> {
     frames.iter().flat_map(|frame| [frame.t1, frame.t2, frame.normal]).flat_map(|vector| vector.to_array()).collect()
 }
 
-pub(super) fn coordinates(points: &[DVec3]) -> Vec<f64> {
-    points.iter().flat_map(DVec3::to_array).collect()
-}
-
 /// Circles, each its center, its normal and its radius.
 ///
 /// # Safety
@@ -225,15 +169,6 @@ pub(super) unsafe fn strip(guide: *const f64, border: *const f64, count: c_int) 
     })
 }
 
-/// The error with another argument's name in its place.
-pub(super) fn renamed(error: Error, from: &str, to: &str) -> Error {
-    let place = error.place().to_owned();
-    match place.strip_prefix(from) {
-        Some(rest) if rest.is_empty() || rest.starts_with('[') => error.with_place(format!("{to}{rest}")),
-        _ => error,
-    }
-}
-
 /// 1 for every listed index below `count`, else 0.
 pub(super) fn marks(indices: &[usize], count: usize) -> Vec<c_int> {
     (0..count).map(|i| c_int::from(indices.contains(&i))).collect()
@@ -257,93 +192,5 @@ pub(super) fn call_back(
     match unsafe { progress(told, user) } {
         0 => ControlFlow::Continue(()),
         _ => ControlFlow::Break(()),
-    }
-}
-
-/// A value that an output can hold.
-pub(super) trait Value: Copy + 'static {
-    fn is_finite(&self) -> bool;
-}
-
-impl Value for f64 {
-    fn is_finite(&self) -> bool {
-        f64::is_finite(*self)
-    }
-}
-
-impl Value for c_int {
-    fn is_finite(&self) -> bool {
-        true
-    }
-}
-
-/// What a call is going to write: all is checked before anything is written.
-#[derive(Default)]
-pub(super) struct Outputs {
-    writes: Vec<Box<dyn FnOnce()>>,
-}
-
-impl Outputs {
-    /// Values for an output that must be there.
-    ///
-    /// # Safety
-    /// `out` is null or writable for so many values.
-    pub(super) unsafe fn must<T: Value>(&mut self, name: &str, out: *mut T, values: Vec<T>) -> Result<()> {
-        check_pointer(name, out.cast_const(), values.len())?;
-        if values.iter().any(|value| !value.is_finite()) {
-            let reason = "coordinates are so large that the result is not finite";
-            return Err(Error::new(Status::InvalidValue, reason).at(name));
-        }
-        // SAFETY: the pointer was checked, and the caller vouches for the rest.
-        self.writes.push(Box::new(move || unsafe { arguments::write(out, &values) }));
-        Ok(())
-    }
-
-    /// Values for an output that may be null.
-    ///
-    /// # Safety
-    /// `out` is null or writable for so many values.
-    pub(super) unsafe fn may<T: Value>(&mut self, name: &str, out: *mut T, values: Vec<T>) -> Result<()> {
-        if out.is_null() {
-            return Ok(());
-        }
-        // SAFETY: the caller vouches for it.
-        unsafe { self.must(name, out, values) }
-    }
-
-    /// Values for an output of a stated capacity, in units of `unit` values, and their number for `count`. The values
-    /// are written if they fit; the number always.
-    ///
-    /// # Safety
-    /// `out` is null or writable for `unit * capacity` values, `count` for one int.
-    pub(super) unsafe fn sized<T: Value>(
-        &mut self,
-        name: &str,
-        out: *mut T,
-        capacity: c_int,
-        count: *mut c_int,
-        values: Vec<T>,
-        unit: usize,
-    ) -> Result<()> {
-        let capacity = length("capacity", capacity)?;
-        check_pointer(name, out.cast_const(), capacity.saturating_mul(unit))?;
-        check_pointer("count", count.cast_const(), 1)?;
-        let needed = values.len() / unit;
-        // SAFETY: the caller vouches for both.
-        unsafe {
-            self.must("count", count, vec![c_count(needed)?])?;
-            if needed <= capacity { self.must(name, out, values) } else { Ok(()) }
-        }
-    }
-
-    /// Anything else to be done when all is written.
-    pub(super) fn then(&mut self, write: impl FnOnce() + 'static) {
-        self.writes.push(Box::new(write));
-    }
-
-    /// Writes all.
-    pub(super) fn write(self) -> Result<()> {
-        self.writes.into_iter().for_each(|write| write());
-        Ok(())
     }
 }

@@ -74,6 +74,17 @@ impl Condition {
         strips.iter().enumerate().flat_map(ends).collect()
     }
 
+    /// Whether it is about the same part of the same strip as another, in the same way, so that the two agree or contradict.
+    pub(super) fn is_of_the_place_of(&self, other: &Self) -> bool {
+        let place = |condition: &Self| match *condition {
+            Self::PlanarBoundary { strip, side, .. } => (0, strip, side, None),
+            Self::FixedEnd { strip, side, end, .. } => (1, strip, side, Some(end)),
+            Self::FixedEndRuling { strip, end, .. } => (2, strip, 0, Some(end)),
+            Self::Conoidal { strip, .. } => (3, strip, 0, None),
+        };
+        place(self) == place(other)
+    }
+
     /// In words.
     fn name(&self) -> String {
         let side = |side: usize| if side == 0 { "first" } else { "second" };
@@ -92,7 +103,8 @@ impl Condition {
         }
     }
 
-    fn check(&self, layout: &Layout) -> Result<()> {
+    /// Refuses what is no condition of these strips; the place is the field.
+    pub(super) fn check(&self, layout: &Layout) -> Result<()> {
         let wrong = |reason: String| Err(Error::new(Status::InvalidValue, reason).at(self.field()));
         let (strip, side, vector) = match *self {
             Self::PlanarBoundary { strip, side, normal, offset } => {

@@ -1,5 +1,9 @@
 //! From a mesh to ruled strips, step by step: directions, boundaries, strips to start from, strips that are optimal.
 
+mod draft;
+
+pub use draft::Draft;
+
 use std::ops::ControlFlow;
 
 use glam::DVec3;
@@ -7,6 +11,8 @@ use glam::DVec3;
 use super::asymptotic::{self, AsymptoticDirections};
 use super::boundaries::{Boundaries, BoundaryOptions, Drawn, Levels, drawn_boundaries, level_boundaries};
 use super::conditions::Condition;
+use super::great_circles::great_circle_boundaries;
+use super::layout::Layout;
 use super::level_function::{LevelFunction, LevelOptions, level_function};
 use super::optimise::{self, Optimised, Task, optimise};
 use super::periods::{Spacing, periodic_boundaries};
@@ -119,8 +125,19 @@ impl Design {
         self.start.as_ref()
     }
 
-    /// Takes level curves of a function as boundaries; on a surface with holes (one with handles is refused, `mesh`), of one that may jump by a multiple of the levels'
-    /// distance around each. The edges where the field flips are added to those of `function`.
+    /// Takes the directions of another family, or of other signs, and takes back what was made with those before.
+    ///
+    /// # Errors
+    /// As [`AsymptoticDirections::orient`].
+    pub fn orient(&mut self, family: usize, options: &orientation::Options) -> Result<()> {
+        let oriented = self.directions.orient(&self.mesh, family, options)?;
+        (self.field, self.flips) = (oriented.field, oriented.flips);
+        self.take(Boundaries::default(), Vec::new(), None);
+        Ok(())
+    }
+
+    /// Takes level curves of a function as boundaries; on a surface with holes, of one that may jump by a multiple of the levels'
+    /// distance around each. A surface with handles is refused (`mesh`). The edges where the field flips are added to those of `function`.
     ///
     /// # Errors
     /// As [`level_function`](fn@level_function) and [`level_boundaries`], or [`periodic_boundaries`] on a surface with holes, where levels cannot be
@@ -154,6 +171,26 @@ impl Design {
         Ok(())
     }
 
+    /// Takes other level curves of the function found before as boundaries.
+    ///
+    /// # Errors
+    /// As [`level_boundaries`]. Status `NotInitialised`: there is no function (`levels`). `InvalidValue`: the surface has holes, around
+    /// which the function goes with the distance of levels, and is to be found anew (`levels`).
+    pub fn set_levels(&mut self, levels: &Levels, options: &BoundaryOptions) -> Result<()> {
+        let Some(function) = &self.function else {
+            let reason = "expected levels of a function found before, but there is none yet";
+            return Err(Error::new(Status::NotInitialised, reason).at("levels"));
+        };
+        if self.mesh.boundary().len() > 1 {
+            let reason = "around a hole the function goes with the distance of levels: find it anew";
+            return Err(Error::new(Status::InvalidValue, reason).at("levels"));
+        }
+        let boundaries = level_boundaries(&self.mesh, &self.field, &function.values, levels, options)?;
+        let function = self.function.take();
+        self.take(boundaries, Vec::new(), function);
+        Ok(())
+    }
+
     /// Takes plane sections as boundaries; gives the least angles at which they cross the field, for each plane.
     ///
     /// # Errors
@@ -162,6 +199,16 @@ impl Design {
         let found = planar_boundaries(&self.mesh, &self.field, planes, options)?;
         self.take(found.boundaries, found.planes, None);
         Ok(found.angles_rad)
+    }
+
+    /// Takes the curves as boundaries along which the field is orthogonal to one of these axes each.
+    ///
+    /// # Errors
+    /// As [`great_circle_boundaries`].
+    pub fn set_great_circle_boundaries(&mut self, axes: &[DVec3], options: &BoundaryOptions) -> Result<()> {
+        let boundaries = great_circle_boundaries(&self.mesh, &self.field, axes, options)?;
+        self.take(boundaries, Vec::new(), None);
+        Ok(())
     }
 
     /// Takes curves drawn by hand as boundaries.
@@ -223,6 +270,59 @@ impl Design {
         self.joints = joints;
         self.start = Some(found);
         Ok(())
+    }
+
+    /// Takes strips from elsewhere. Where they are as many as before, and open or closed as those, they are neighbours as before;
+    /// otherwise each joins the next, and planes of boundaries are forgotten.
+    ///
+    /// # Errors
+    /// No strips, or strips that cannot be neighbours (`strips`, `joints.pairs[k]`).
+    pub fn set_strips(&mut self, strips: Vec<Strip>) -> Result<()> {
+        let kinds = |strips: &[Strip]| strips.iter().map(|strip| strip.basis().is_closed()).collect::<Vec<_>>();
+        let is_alike = kinds(&strips) == kinds(&self.strips);
+        let joints = if is_alike { self.joints.clone() } else { Joints::chain(strips.len()) };
+        Layout::new(&strips, &joints)?;
+        if !is_alike {
+            self.planes.clear();
+        }
+        (self.strips, self.joints) = (strips, joints);
+        Ok(())
+    }
+
+    /// Moves the control points of a strip; shared boundaries of its neighbours go along.
+    ///
+    /// # Errors
+    /// There is no such strip (`strip`), or not as many control points of both boundaries as it has, finite ones (`control[side]`,
+    /// `control[side][i]`).
+    pub fn set_control(&mut self, strip: usize, control: [Vec<DVec3>; 2]) -> Result<()> {
+        let mut strips = self.strips.clone();
+        let Some(of) = strips.get_mut(strip) else {
+            let reason = format!("{strip} is out of range for {} strips", self.strips.len());
+            return Err(Error::new(Status::IndexOutOfRange, reason).at("strip"));
+        };
+        *of = Strip::new(of.basis().clone(), control.clone())?;
+        for &[first, second] in self.joints.pairs.iter().filter(|_| self.joints.is_shared) {
+            if first == strip {
+                let own = strips[second].control(1).to_vec();
+                strips[second] = Strip::new(strips[second].basis().clone(), [control[1].clone(), own])?;
+            } else if second == strip {
+                let own = strips[first].control(0).to_vec();
+                strips[first] = Strip::new(strips[first].basis().clone(), [own, control[0].clone()])?;
+            }
+        }
+        self.strips = strips;
+        Ok(())
+    }
+
+    /// The strips beside a boundary, each with the side that it has there.
+    pub fn sides_of(&self, boundary: usize) -> Vec<(usize, usize)> {
+        let sides = self.chained_sides().into_iter().filter(|side| side.2 == boundary);
+        sides.map(|(strip, side, _)| (strip, side)).filter(|(strip, _)| *strip < self.strips.len()).collect()
+    }
+
+    /// The plane that a boundary was cut by, if it was.
+    pub fn plane_of(&self, boundary: usize) -> Option<Plane> {
+        *self.planes.get(boundary)?
     }
 
     /// The conditions that keep boundaries in the planes that they were cut by; none if they were not.
@@ -350,6 +450,9 @@ mod tests {
             let mut design = Design::new(&mesh, &FieldOptions { family, ..FieldOptions::default() }).unwrap();
             let (levels, options) = (Levels::Count(4), BoundaryOptions::default());
             design.set_level_boundaries(&LevelOptions::default(), &levels, &options, &mut quiet).unwrap();
+            design.set_levels(&Levels::Count(2), &options).unwrap();
+            assert!(design.boundaries().boundaries.len() == 4 && design.function().is_some());
+            design.set_levels(&levels, &options).unwrap();
             assert!(design.start(StartOptions::default()).is_ok());
             let found = design.optimise(None, &[], &optimise::Options::default(), &mut quiet).unwrap();
             assert!(found.history.windows(2).all(|pair| pair[1].value < pair[0].value));

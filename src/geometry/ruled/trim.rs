@@ -41,6 +41,10 @@ const OFF_END: f64 = 1e-8;
 /// Corners this near to a ruling between two columns, in the unit square, are on it.
 const ON_COLUMN: f64 = 1e-8;
 
+/// The longest outline of a boundary loop, in units of the unit square: of a strip that lies beside the reference it is a few long.
+/// Longer ones jump to and fro, and cross themselves about as often as the square of their length.
+const LONGEST_OUTLINE: f64 = 200.0;
+
 /// Each face is judged at so many points.
 const JUDGES: usize = 9;
 
@@ -165,7 +169,8 @@ impl Trimmed {
 ///
 /// # Errors
 /// An option out of range (`options.tolerance`, `options.columns_per_span`), or a strip whose control points are all one
-/// (`strips[i]`).
+/// (`strips[i]`). Status `Degenerate`: a strip so far from the reference, or so folded, that the nearest points of its boundary jump
+/// to and fro on it (`strips[i]`).
 pub fn trim(strips: &[Strip], reference: &ReferenceMesh<'_>, options: &TrimOptions) -> Result<Vec<Trimmed>> {
     options.check()?;
     let one = |(i, strip): (usize, &Strip)| {
@@ -180,6 +185,10 @@ fn trim_one(strip: &Strip, reference: &ReferenceMesh<'_>, options: &TrimOptions)
     // The rectangle as a square: on the grid of 32 bits that polygons are clipped on, both parameters are as fine.
     let last = strip.length_u();
     outlines.iter_mut().flatten().for_each(|at| at[0] /= last);
+    if !outlines.iter().all(|outline| length(outline) <= LONGEST_OUTLINE) {
+        let reason = "expected a strip beside the reference, found one on which the nearest points of its boundary jump to and fro";
+        return Err(Error::new(Status::Degenerate, reason));
+    }
     let square: Contour = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let mut kept: Vec<Vec<Contour>> = Vec::new();
     for rule in [OverlayRule::Intersect, OverlayRule::Difference] {
@@ -200,6 +209,15 @@ fn trim_one(strip: &Strip, reference: &ReferenceMesh<'_>, options: &TrimOptions)
     parameters.iter_mut().for_each(to_spans);
     let area = triangles.iter().map(|corners| area(strip, corners.map(|i| parameters[i as usize]))).sum();
     Ok(Trimmed { pieces, parameters, triangles, area })
+}
+
+/// The length of a closed polygon.
+fn length(contour: &Contour) -> f64 {
+    let step = |(i, a): (usize, &[f64; 2])| {
+        let b = contour[(i + 1) % contour.len()];
+        (b[0] - a[0]).hypot(b[1] - a[1])
+    };
+    contour.iter().enumerate().map(step).sum()
 }
 
 /// A coordinate of the unit square, put on a side where rounding to the grid took it off.

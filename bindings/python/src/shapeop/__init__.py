@@ -7,7 +7,7 @@ Recipes make a problem from a mesh and solve it. The library names them (:func:`
 here, such as ``shapeop.planarize(mesh)``.
 """
 
-from . import canal
+from . import canal, ruled
 from ._library import (
     LIBRARY_PATH,
     ArgumentError,
@@ -89,6 +89,7 @@ __all__ = [
     "measure_names",
     "recipe",
     "recipe_names",
+    "ruled",
     "version",
 ]
 

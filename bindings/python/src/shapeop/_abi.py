@@ -106,6 +106,38 @@ SO_CANAL_STEP_SIMILARITY = 0
 SO_CANAL_STEP_MOEBIUS = 1
 SO_CANAL_STEP_COMBESCURE = 2
 
+# shapeop_ruled_point
+SO_RULED_POINT_GOOD = 0
+SO_RULED_POINT_NOT_NEGATIVE = 1
+SO_RULED_POINT_NOT_FITTED = 2
+
+# shapeop_ruled_end
+SO_RULED_END_BOUNDARY = 0
+SO_RULED_END_UNKNOWN = 1
+SO_RULED_END_LENGTH = 2
+SO_RULED_END_STEPS = 3
+
+# shapeop_ruled_levels
+SO_RULED_LEVELS_ORTHOGONAL = 0
+SO_RULED_LEVELS_DIRECTION = 1
+SO_RULED_LEVELS_EQUIDISTANT = 2
+SO_RULED_LEVELS_GEODESIC = 3
+SO_RULED_LEVELS_CONOIDAL = 4
+
+# shapeop_ruled_image
+SO_RULED_IMAGE_NONE = 0
+SO_RULED_IMAGE_REGULAR = 1
+SO_RULED_IMAGE_FOLDED = 2
+SO_RULED_IMAGE_GREAT_CIRCLE = 3
+SO_RULED_IMAGE_CURVE = 4
+
+# shapeop_ruled_stop
+SO_RULED_STOP_NONE = 0
+SO_RULED_STOP_CONVERGED = 1
+SO_RULED_STOP_ITERATIONS = 2
+SO_RULED_STOP_LINE_SEARCH = 3
+SO_RULED_STOP_CANCELLED = 4
+
 
 class shapeop_constraint_type(ctypes.Structure):
     _fields_ = [
@@ -317,8 +349,229 @@ class shapeop_canal_properties(ctypes.Structure):
     ]
 
 
+class shapeop_ruled_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("family", c_int),
+        ("allow_cut", c_int),
+        ("least_neighbours", c_uint),
+        ("flatness", c_double),
+        ("max_mask", c_double),
+        ("hint_x", c_double),
+        ("hint_y", c_double),
+        ("hint_z", c_double),
+    ]
+
+
+class shapeop_ruled_level_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("max_iterations", c_uint),
+        ("allow_folds", c_int),
+        ("reserved", c_uint),
+        ("orthogonal", c_double),
+        ("direction", c_double),
+        ("equidistant", c_double),
+        ("geodesic", c_double),
+        ("conoidal", c_double),
+        ("laplace", c_double),
+        ("relative_decrease", c_double),
+    ]
+
+
+class shapeop_ruled_level_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("stop", c_int),
+        ("iterations", c_uint),
+        ("critical_count", c_uint),
+        ("image", c_int),
+        ("image_unused_count", c_uint),
+        ("least_slope", c_double),
+        ("greatest_slope", c_double),
+        ("image_extent", c_double),
+        ("image_folded", c_double),
+        ("image_flatness", c_double),
+        ("image_axis_x", c_double),
+        ("image_axis_y", c_double),
+        ("image_axis_z", c_double),
+    ]
+
+
+class shapeop_ruled_boundary_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("extends", c_int),
+        ("overshoots", c_int),
+        ("reserved", c_uint),
+        ("least_length", c_double),
+    ]
+
+
+class shapeop_ruled_progress(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("iteration", c_uint),
+        ("fraction", c_double),
+        ("value", c_double),
+        ("largest_deviation", c_double),
+        ("largest_gap", c_double),
+    ]
+
+
+class shapeop_ruled_optimise_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("max_iterations", c_uint),
+        ("samples_along", c_uint),
+        ("samples_across", c_uint),
+        ("proximity", c_double),
+        ("beyond", c_double),
+        ("gap", c_double),
+        ("coverage", c_double),
+        ("thin_plate", c_double),
+        ("proximal", c_double),
+        ("largest_deviation", c_double),
+        ("least_width", c_double),
+        ("tolerance", c_double),
+    ]
+
+
+class shapeop_ruled_optimise_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("stop", c_int),
+        ("iterations", c_uint),
+        ("free_count", c_uint),
+        ("before", c_double),
+        ("after", c_double),
+        ("proximity", c_double),
+        ("gap", c_double),
+        ("coverage", c_double),
+        ("way", c_double),
+        ("excess", c_double),
+        ("largest_deviation", c_double),
+        ("largest_gap", c_double),
+    ]
+
+
+class shapeop_ruled_report_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("samples_along", c_uint),
+        ("samples_across", c_uint),
+        ("columns_per_span", c_uint),
+        ("feature_ratio", c_double),
+        ("trim_tolerance", c_double),
+    ]
+
+
+class shapeop_ruled_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("strip_count", c_uint),
+        ("joint_count", c_uint),
+        ("too_wide_count", c_uint),
+        ("largest_deviation", c_double),
+        ("rms_deviation", c_double),
+        ("largest_uncovered", c_double),
+        ("rms_uncovered", c_double),
+        ("reference_area", c_double),
+        ("trimmed_area", c_double),
+        ("coverage", c_double),
+        ("largest_gap", c_double),
+        ("mean_gap", c_double),
+        ("largest_kink", c_double),
+        ("mean_kink", c_double),
+        ("width_variation", c_double),
+    ]
+
+
+class shapeop_ruled_strip_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("is_too_wide", c_int),
+        ("largest_deviation", c_double),
+        ("at_x", c_double),
+        ("at_y", c_double),
+        ("at_z", c_double),
+        ("rms_deviation", c_double),
+        ("area", c_double),
+        ("trimmed_area", c_double),
+        ("least_width", c_double),
+        ("mean_width", c_double),
+        ("greatest_width", c_double),
+        ("width_variation", c_double),
+        ("width_over_feature", c_double),
+    ]
+
+
+class shapeop_ruled_joint_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("first", c_int),
+        ("second", c_int),
+        ("gap_count", c_uint),
+        ("kink_count", c_uint),
+        ("reserved", c_uint),
+        ("largest_gap", c_double),
+        ("mean_gap", c_double),
+        ("gap_x", c_double),
+        ("gap_y", c_double),
+        ("gap_z", c_double),
+        ("largest_kink", c_double),
+        ("mean_kink", c_double),
+        ("kink_x", c_double),
+        ("kink_y", c_double),
+        ("kink_z", c_double),
+    ]
+
+
+class shapeop_ruled_plank_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("has_first_cut", c_int),
+        ("thickness", c_double),
+        ("depth", c_double),
+        ("first_cut", c_double),
+        ("tolerance", c_double),
+    ]
+
+
+class shapeop_ruled_planks(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("plank_count", c_uint),
+        ("axis_x", c_double),
+        ("axis_y", c_double),
+        ("axis_z", c_double),
+        ("thickness", c_double),
+        ("deviation", c_double),
+        ("stock_area", c_double),
+        ("offcut", c_double),
+    ]
+
+
+class shapeop_ruled_plank(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("reserved", c_uint),
+        ("lower", c_double),
+        ("upper", c_double),
+        ("filled", c_double),
+        ("first_u", c_double),
+        ("last_u", c_double),
+        ("length", c_double),
+        ("width", c_double),
+        ("first_end_angle", c_double),
+        ("second_end_angle", c_double),
+        ("offcut", c_double),
+    ]
+
+
 shapeop_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_progress), c_void_p)
 shapeop_canal_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_canal_progress), c_void_p)
+shapeop_ruled_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_ruled_progress), c_void_p)
 
 # What each function returns, and what it takes.
 FUNCTIONS = {
@@ -1178,6 +1431,283 @@ FUNCTIONS = {
             c_double,
         ],
     ),
+    "shapeop_ruledDefaultOptions": (c_int, [POINTER(shapeop_ruled_options)]),
+    "shapeop_ruledCreate": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(shapeop_ruled_options),
+        ],
+    ),
+    "shapeop_ruledCopy": (c_void_p, [c_void_p]),
+    "shapeop_ruledDelete": (None, [c_void_p]),
+    "shapeop_ruledSelectFamily": (c_int, [c_void_p, c_int, POINTER(c_double), c_int]),
+    "shapeop_ruledTriangles": (c_int, [c_void_p, POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_ruledCurvatures": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_ruledDirections": (c_int, [c_void_p, c_int, POINTER(c_double), POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_ruledField": (c_int, [c_void_p, POINTER(c_double), POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_ruledFlips": (c_int, [c_void_p, POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_ruledTrace": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(c_double),
+            c_int,
+            c_double,
+            c_double,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_ruledDefaultLevelOptions": (c_int, [c_int, POINTER(shapeop_ruled_level_options)]),
+    "shapeop_ruledSetLevelBoundaries": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(shapeop_ruled_level_options),
+            c_int,
+            c_double,
+            POINTER(c_double),
+            c_int,
+            POINTER(shapeop_ruled_boundary_options),
+            shapeop_ruled_progress_callback,
+            c_void_p,
+        ],
+    ),
+    "shapeop_ruledSetLevels": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            c_double,
+            POINTER(c_double),
+            c_int,
+            POINTER(shapeop_ruled_boundary_options),
+        ],
+    ),
+    "shapeop_ruledLevelValues": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_ruledLevelHistory": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_ruledCriticalPoints": (c_int, [c_void_p, POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_ruledLevelReport": (c_int, [c_void_p, POINTER(shapeop_ruled_level_report)]),
+    "shapeop_ruledDefaultBoundaryOptions": (c_int, [POINTER(shapeop_ruled_boundary_options)]),
+    "shapeop_ruledSetPlanarBoundaries": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(c_double),
+            c_int,
+            c_double,
+            c_int,
+            POINTER(shapeop_ruled_boundary_options),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_ruledSetGreatCircleBoundaries": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(c_double),
+            c_int,
+            POINTER(shapeop_ruled_boundary_options),
+        ],
+    ),
+    "shapeop_ruledGreatCircle": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_ruledSetDrawnBoundaries": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+            POINTER(shapeop_ruled_boundary_options),
+        ],
+    ),
+    "shapeop_ruledBoundaryCount": (c_int, [c_void_p]),
+    "shapeop_ruledBoundary": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_ruledBoundaryAxis": (c_int, [c_void_p, c_int, POINTER(c_double), POINTER(c_double)]),
+    "shapeop_ruledBoundaryPairs": (c_int, [c_void_p, POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_ruledUnmatchedLevels": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_ruledDroppedCurves": (c_int, [c_void_p, POINTER(c_double), POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_ruledStart": (c_int, [c_void_p, c_int, c_int]),
+    "shapeop_ruledStarted": (c_int, [c_void_p, POINTER(c_int), POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_ruledStripCount": (c_int, [c_void_p]),
+    "shapeop_ruledJoints": (c_int, [c_void_p, POINTER(c_int), c_int, POINTER(c_int), POINTER(c_int)]),
+    "shapeop_ruledControl": (c_int, [c_void_p, c_int, POINTER(c_double), c_int, POINTER(c_int), POINTER(c_int)]),
+    "shapeop_ruledKnots": (c_int, [c_void_p, c_int, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_ruledSetControl": (c_int, [c_void_p, c_int, POINTER(c_double), c_int]),
+    "shapeop_ruledSetStripsText": (c_int, [c_void_p, c_char_p]),
+    "shapeop_ruledStripsText": (c_char_p, [c_void_p]),
+    "shapeop_ruledEvaluate": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            c_double,
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_ruledConstrainPlane": (c_int, [c_void_p, c_int, POINTER(c_double)]),
+    "shapeop_ruledConstrainCutPlanes": (c_int, [c_void_p]),
+    "shapeop_ruledConstrainPoint": (c_int, [c_void_p, c_int, c_int, c_int, POINTER(c_double)]),
+    "shapeop_ruledConstrainEnds": (c_int, [c_void_p]),
+    "shapeop_ruledConstrainEndDirection": (c_int, [c_void_p, c_int, c_int, POINTER(c_double)]),
+    "shapeop_ruledConstrainConoid": (c_int, [c_void_p, c_int, POINTER(c_double)]),
+    "shapeop_ruledConditionCount": (c_int, [c_void_p]),
+    "shapeop_ruledClearConditions": (c_int, [c_void_p]),
+    "shapeop_ruledDefaultOptimiseOptions": (c_int, [POINTER(shapeop_ruled_optimise_options)]),
+    "shapeop_ruledOptimise": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(shapeop_ruled_optimise_options),
+            shapeop_ruled_progress_callback,
+            c_void_p,
+            POINTER(shapeop_ruled_optimise_report),
+        ],
+    ),
+    "shapeop_ruledHistory": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_ruledDefaultReportOptions": (c_int, [POINTER(shapeop_ruled_report_options)]),
+    "shapeop_ruledReport": (c_int, [c_void_p, POINTER(shapeop_ruled_report_options), POINTER(shapeop_ruled_report)]),
+    "shapeop_ruledStripReport": (c_int, [c_void_p, c_int, POINTER(shapeop_ruled_strip_report)]),
+    "shapeop_ruledJointReport": (c_int, [c_void_p, c_int, POINTER(shapeop_ruled_joint_report)]),
+    "shapeop_ruledTooWide": (c_int, [c_void_p, POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_ruledReportText": (c_char_p, [c_void_p]),
+    "shapeop_ruledMesh": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_ruledTrimmedMesh": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            c_int,
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_ruledRulings": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_ruledSurfacesObj": (c_char_p, [c_void_p]),
+    "shapeop_ruledRulingsObj": (c_char_p, [c_void_p, c_int]),
+    "shapeop_ruledRulingsCsv": (c_char_p, [c_void_p, c_int]),
+    "shapeop_ruledZebra": (
+        c_int,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            c_double,
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_ruledDefaultPlankOptions": (c_int, [POINTER(shapeop_ruled_plank_options)]),
+    "shapeop_ruledStripAxis": (c_int, [c_void_p, c_int, POINTER(c_double), POINTER(c_double)]),
+    "shapeop_ruledCutPlanks": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            POINTER(shapeop_ruled_plank_options),
+            POINTER(c_double),
+            POINTER(shapeop_ruled_planks),
+        ],
+    ),
+    "shapeop_ruledPlank": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            POINTER(shapeop_ruled_plank),
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_ruledDowels": (c_int, [c_void_p, c_int, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_ruledPlanksText": (c_char_p, [c_void_p]),
+    "shapeop_ruledPlanksSvg": (c_char_p, [c_void_p, c_char_p, c_double]),
 }
 
 

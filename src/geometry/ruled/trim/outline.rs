@@ -42,6 +42,10 @@ const SIMPLER: f64 = 0.1;
 /// and so many in a row at most.
 const MOST_DROPPED: usize = 64;
 
+/// Two places of a strip are one if they are no farther apart than the tolerance, and their parameters than this, in the unit square:
+/// a strip may come near itself.
+const NEAR: f64 = 1e-3;
+
 /// A point of the loop with its parameters.
 #[derive(Clone, Copy)]
 struct Located {
@@ -69,7 +73,12 @@ impl<F: Fn(DVec3) -> [f64; 2]> Projection<'_, F> {
             let (next, mut budget) = (corners[(i + 1) % corners.len()], MOST_PIECES);
             self.extend(corner, next, MOST_HALVINGS, &mut budget, &mut curve);
         }
-        let curve = self.simplified(self.without_runs(curve));
+        let is_same = |a: [f64; 2], b: [f64; 2]| {
+            let position = |at: [f64; 2]| self.strip.at(at[0], at[1]).point;
+            let is_near = self.step(a[0], b[0]).abs() < NEAR * self.strip.length_u() && (a[1] - b[1]).abs() < NEAR;
+            is_near && position(a).distance(position(b)) <= self.tolerance
+        };
+        let curve = self.simplified(without_spikes(self.without_runs(curve), is_same));
         if self.strip.basis().is_closed() { at_seam(&curve, self.strip.length_u()) } else { vec![curve] }
     }
 
@@ -167,6 +176,20 @@ impl<F: Fn(DVec3) -> [f64; 2]> Projection<'_, F> {
     }
 }
 
+/// The curve without its ways to a point and straight back. Where two places of a strip are as near to a part of the boundary, the
+/// nearest one jumps to and fro between them with every rounding. By the even-odd rule such ways count for nothing; hundreds of
+/// them nearly on one another would take all memory to clip.
+fn without_spikes(curve: Contour, is_same: impl Fn([f64; 2], [f64; 2]) -> bool) -> Contour {
+    let mut kept = Contour::with_capacity(curve.len());
+    for at in curve {
+        match kept[..] {
+            [.., before, _] if is_same(before, at) => _ = kept.pop(),
+            _ => kept.push(at),
+        }
+    }
+    kept
+}
+
 /// A closed curve on a strip that is closed in `u` over `length`, cut at the seam. Each part from one crossing of the seam to the
 /// next is closed on a way outside the rectangle, which changes the parity of all faces inside or of none.
 fn at_seam(curve: &Contour, length: f64) -> Vec<Contour> {
@@ -200,4 +223,19 @@ fn closed_outside(mut part: Contour, length: f64) -> Contour {
     let (start, end) = (part[0], part[part.len() - 1]);
     part.extend([[outside(end), end[1]], [outside(end), -1.0], [outside(start), -1.0], [outside(start), start[1]]]);
     part
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ways_to_and_fro_are_left_out() {
+        let is_same = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-6;
+        let [a, b, c, d] = [[0.0, 0.0], [1.0, 0.1], [1.0, 0.2], [0.0, 1.0]];
+        let near_b = [1.0, 0.100_000_3];
+        assert_eq!(without_spikes(vec![a, b, a, near_b, a, b, a, c, d], is_same), [a, c, d]);
+        assert_eq!(without_spikes(vec![a, b, c, b, a, d], is_same), [a, d]);
+        assert_eq!(without_spikes(vec![a, b, c, d], is_same), [a, b, c, d]);
+    }
 }

@@ -2,34 +2,33 @@
 
 from __future__ import annotations
 
-import ctypes
-import signal
-import threading
 from typing import Any, Optional
 
 from .. import _abi, _arrays
+from .._calls import CallWatch
+from .._calls import doubles as _doubles
+from .._calls import ints as _ints
+from .._calls import optional_vector as _optional
+from .._calls import vector as _vector
 from .._library import ArgumentError
 from ._kinds import ProgressFunction, Wraps
 
-
-def _doubles(count: int) -> Any:
-    return (ctypes.c_double * max(count, 0))()
-
-
-def _ints(count: int) -> Any:
-    return (ctypes.c_int * max(count, 0))()
+__all__ = [
+    "_Grid",
+    "_Watch",
+    "_circles",
+    "_doubles",
+    "_frame",
+    "_ints",
+    "_of_length",
+    "_optional",
+    "_truths",
+    "_vector",
+]
 
 
 def _truths(values: Any) -> list[bool]:
     return [bool(value) for value in values]
-
-
-def _vector(value: Any, name: str) -> Any:
-    return _arrays.vector(value, name).pointer
-
-
-def _optional(value: Any, name: str) -> Any:
-    return None if value is None else _vector(value, name)
 
 
 def _of_length(values: Any, name: str, count: int) -> Any:
@@ -85,39 +84,8 @@ class _Grid:
         return other._points.pointer
 
 
-class _Watch:
-    """From the library's progress callback to the caller's: no exception crosses over; Ctrl-C ends the call."""
+class _Watch(CallWatch):
+    """From the library's progress callback to the caller's, which is told the part done."""
 
     def __init__(self, progress: Optional[ProgressFunction]) -> None:
-        self._progress = progress
-        self._error: Optional[BaseException] = None
-        self._interrupted = False
-        self._handler: Any = None
-        self.callback: Any = _abi.shapeop_canal_progress_callback(self._called)
-
-    def __enter__(self) -> _Watch:
-        if threading.current_thread() is threading.main_thread() and callable(signal.getsignal(signal.SIGINT)):
-            self._handler = signal.signal(signal.SIGINT, self._note)
-        return self
-
-    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
-        self.callback = None
-        if self._handler is not None:
-            signal.signal(signal.SIGINT, self._handler)
-        if error is None and self._error is not None:
-            raise self._error
-        if error is None and self._interrupted:
-            raise KeyboardInterrupt
-
-    def _note(self, number: int, frame: Any) -> None:
-        self._interrupted = True
-
-    def _called(self, told: Any, _user: Optional[int]) -> int:
-        try:
-            if self._interrupted:
-                return 1
-            answer = None if self._progress is None else self._progress(told.contents.fraction)
-            return int(answer is not None and not answer)
-        except BaseException as error:
-            self._error = error
-            return 1
+        super().__init__(_abi.shapeop_canal_progress_callback, progress, lambda told: told.fraction)
