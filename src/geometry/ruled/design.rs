@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::asymptotic::{self, AsymptoticDirections};
 use super::boundaries::{Boundaries, BoundaryOptions, Drawn, Levels, drawn_boundaries, level_boundaries};
 use super::conditions::Condition;
+use super::great_circles::great_circle_boundaries;
 use super::level_function::{LevelFunction, LevelOptions, level_function};
 use super::optimise::{self, Optimised, Task, optimise};
 use super::periods::{Spacing, periodic_boundaries};
@@ -162,6 +163,16 @@ impl Design {
         let found = planar_boundaries(&self.mesh, &self.field, planes, options)?;
         self.take(found.boundaries, found.planes, None);
         Ok(found.angles_rad)
+    }
+
+    /// Takes the curves along which the field is orthogonal to each of some axes as boundaries: of conoidal strips, chosen by hand.
+    ///
+    /// # Errors
+    /// As [`great_circle_boundaries`].
+    pub fn set_great_circle_boundaries(&mut self, axes: &[DVec3], options: &BoundaryOptions) -> Result<()> {
+        let boundaries = great_circle_boundaries(&self.mesh, &self.field, axes, options)?;
+        self.take(boundaries, Vec::new(), None);
+        Ok(())
     }
 
     /// Takes curves drawn by hand as boundaries.

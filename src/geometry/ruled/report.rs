@@ -9,6 +9,7 @@ mod nearest;
 
 pub use features::feature_sizes;
 pub use joints::{JointReport, consecutive};
+pub use nearest::distances;
 
 use glam::DVec3;
 use rayon::prelude::*;

@@ -1,6 +1,7 @@
 //! The nearest point of several strips.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::geometry::ruled::Strip;
@@ -9,6 +10,15 @@ use crate::mesh::reference::{ParametricSurface, ReferenceSurface, SurfaceJet};
 
 /// Columns of samples in each span, and rows: as of [`Strip::surface`].
 const SAMPLES: [usize; 2] = [4, 3];
+
+/// How far points are from the nearest of some strips, in model units: as [`report`](super::report) measures it.
+///
+/// # Errors
+/// A strip whose control points are all one; the place is `strips[i]`.
+pub fn distances(points: &[DVec3], strips: &[Strip]) -> Result<Vec<f64>> {
+    let nearest = nearest_strip(strips)?;
+    Ok(points.par_iter().map(|&point| nearest.distance(point)).collect())
+}
 
 /// All strips, ready to be asked. Triangles of all tell which strips may be nearest; Newton's method on these finds out.
 pub(super) struct NearestStrip<F> {
