@@ -10,7 +10,7 @@ use shapeop::mesh::curve::NearestOnCurve;
 use shapeop::mesh::file::read_source;
 use shapeop::mesh::reference::ReferenceMesh;
 
-use super::measures::{Relative, rows, warnings};
+use super::measures::{Relative, counted, rows, warnings};
 use super::places::{Places, in_options};
 use super::planks::read_strips;
 use super::report::{MeshInReport, VERSION};
@@ -62,7 +62,7 @@ pub fn run(args: &RuledCheckArgs, is_quiet: bool) -> Result<Ending> {
         return Ok(Ending::Done);
     }
     let conoidal = off_axis.iter().flatten().filter(|off| **off <= CONOIDAL_DEG).count();
-    let start = format!("{}: {} strips, {conoidal} of them conoidal", args.strips.display(), strips.len());
+    let start = format!("{}: {}, {conoidal} of them conoidal", args.strips.display(), counted(strips.len(), "strip"));
     let names = ["", "deviation", "rms", "least width", "mean", "greatest", "over radius", "kept"];
     let mut table = vec![names.map(str::to_owned).to_vec()];
     for (k, strip) in found.strips.iter().enumerate() {

@@ -14,7 +14,7 @@ use shapeop::geometry::ruled::{export, file};
 use shapeop::mesh::TriangleMesh;
 use shapeop::mesh::reference::ReferenceMesh;
 
-use super::measures::{Relative, rows, warnings};
+use super::measures::{Relative, counted, rows, warnings};
 use super::pictures::{self, Families, View};
 use super::planks;
 use super::report::{
@@ -184,9 +184,9 @@ fn in_words(report: &Report, output: &Output) -> String {
         closed => format!(" ({closed} closed)"),
     };
     let start = format!(
-        "ruled {}: {} strips between {} {} boundaries{closed}{family}",
+        "ruled {}: {} between {} {} boundaries{closed}{family}",
         report.input,
-        report.measures.strips.len(),
+        counted(report.measures.strips.len(), "strip"),
         boundaries.count,
         boundaries.kind
     );
@@ -223,12 +223,8 @@ fn in_words(report: &Report, output: &Output) -> String {
     table.push(row(
         "seconds",
         format!(
-            "field {}, boundaries {}, strips {}, optimisation {}, report {}",
-            number(seconds.field),
-            number(seconds.boundaries),
-            number(seconds.strips),
-            number(seconds.optimisation),
-            number(seconds.report)
+            "field {:.2}, boundaries {:.2}, strips {:.2}, optimisation {:.2}, report {:.2}, files {:.2}",
+            seconds.field, seconds.boundaries, seconds.strips, seconds.optimisation, seconds.report, seconds.files
         ),
     ));
     let warnings: String = report.warnings.iter().map(|warning| format!("\n  warning: {warning}")).collect();

@@ -82,9 +82,9 @@ pub fn warnings(report: &Report, diagonal: f64) -> Vec<String> {
     if let Some(&worst) = worst {
         let strip = &report.strips[worst];
         warnings.push(format!(
-            "strips {} are about as wide as the features of the mesh: strip {worst} is up to {} wide, {} times the least radius of \
+            "{}: about as wide as the features of the mesh; strip {worst} is up to {} wide, {} times the least radius of \
              curvature there; narrower strips follow the mesh better",
-            named(&report.too_wide),
+            strips_named(&report.too_wide),
             number(strip.widths.max),
             number(strip.width_over_feature)
         ));
@@ -106,9 +106,14 @@ pub fn warnings(report: &Report, diagonal: f64) -> Vec<String> {
     warnings
 }
 
-/// The first of a list of places.
-pub fn named(list: &[usize]) -> String {
+/// A count with its noun.
+pub fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// The first of a list of strips.
+fn strips_named(list: &[usize]) -> String {
     let names: Vec<String> = list.iter().take(MOST_NAMED).map(usize::to_string).collect();
     let rest = if list.len() > MOST_NAMED { format!(", ... ({} in all)", list.len()) } else { String::new() };
-    format!("{}{rest}", names.join(", "))
+    format!("strip{} {}{rest}", if list.len() == 1 { "" } else { "s" }, names.join(", "))
 }

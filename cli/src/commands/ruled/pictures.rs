@@ -13,6 +13,7 @@ use shapeop::geometry::ruled::zebra::{Eye, Stripes, zebra as stripes};
 use shapeop::geometry::ruled::{Field, Strip};
 use shapeop::mesh::{Mesh, SurfacePoint, TriangleMesh};
 
+use super::measures::counted;
 use super::report::BoundariesInReport;
 use crate::colours::{Rgb, Scale};
 use crate::picture::{On, Overlay, Panel, Picture, Stroke};
@@ -39,8 +40,8 @@ const SPACING: f64 = 1.0 / 22.0;
 /// Triangles of strips in pictures are this part of the diagonal large; those of zebra stripes this.
 const FINE: f64 = 1.0 / 70.0;
 const FINEST: f64 = 1.0 / 170.0;
-/// An edge of a triangle is cut in so many pieces at most.
-const MOST_CUTS: f64 = 60.0;
+/// A triangle is halved so often at most.
+const MOST_CUTS: u32 = 14;
 
 /// Asymptotic curves of the family of rulings, and of the other one.
 pub type Families = [Vec<Vec<DVec3>>; 2];
@@ -227,33 +228,27 @@ pub fn parts(strips: &[Strip], trimmed: Option<&[Trimmed]>) -> Vec<Part> {
     }
 }
 
-/// Small triangles of strips, each with its strip and the parameters of its middle.
+/// Small triangles of strips, by halving their longest edges, each with its strip and the parameters of its middle.
 fn fine(strips: &[Strip], parts: &[Part], size: f64) -> (Mesh, Vec<(usize, [f64; 2])>) {
     let (mut mesh, mut places) = (Mesh { points: Vec::new(), faces: Vec::new() }, Vec::new());
     for (k, (strip, part)) in strips.iter().zip(parts).enumerate() {
-        for triangle in &part.triangles {
-            let corners = triangle.map(|i| part.parameters[i as usize]);
-            let points = corners.map(|[u, v]| strip.at(u, v).point);
-            let longest = (0..3).map(|i| points[i].distance(points[(i + 1) % 3])).fold(0.0, f64::max);
-            let n = (longest / size).ceil().clamp(1.0, MOST_CUTS) as u32;
-            let at = |i: u32, j: u32| {
-                let [b, c] = [f64::from(i) / f64::from(n), f64::from(j) / f64::from(n)];
-                [0, 1].map(|axis| (1.0 - b - c) * corners[0][axis] + b * corners[1][axis] + c * corners[2][axis])
-            };
-            let mut add = |face: [[f64; 2]; 3]| {
-                let first = mesh.points.len() as u32;
-                mesh.points.extend(face.map(|[u, v]| strip.at(u, v).point));
-                mesh.faces.push(vec![first, first + 1, first + 2]);
-                places.push((k, [0, 1].map(|axis| (face[0][axis] + face[1][axis] + face[2][axis]) / 3.0)));
-            };
-            for i in 0..n {
-                for j in 0..n - i {
-                    add([at(i, j), at(i + 1, j), at(i, j + 1)]);
-                    if i + j + 1 < n {
-                        add([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
-                    }
-                }
+        let point = |[u, v]: [f64; 2]| strip.at(u, v).point;
+        let corners = part.triangles.iter().map(|triangle| triangle.map(|i| part.parameters[i as usize]));
+        let mut left: Vec<([[f64; 2]; 3], u32)> = corners.map(|corners| (corners, 0)).collect();
+        while let Some((corners, cuts)) = left.pop() {
+            let points = corners.map(point);
+            let length = |i: usize| points[i].distance(points[(i + 1) % 3]);
+            let longest = (0..3).fold(0, |a, b| if length(b) > length(a) { b } else { a });
+            if length(longest) > size && cuts < MOST_CUTS {
+                let [a, b, c] = [0, 1, 2].map(|i| corners[(longest + i) % 3]);
+                let middle = [0, 1].map(|axis| 0.5 * (a[axis] + b[axis]));
+                left.extend([([a, middle, c], cuts + 1), ([middle, b, c], cuts + 1)]);
+                continue;
             }
+            let first = mesh.points.len() as u32;
+            mesh.points.extend(points);
+            mesh.faces.push(vec![first, first + 1, first + 2]);
+            places.push((k, [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0)));
         }
     }
     (mesh, places)
@@ -305,7 +300,7 @@ pub fn strips(
         is_smooth: true,
         ..Overlay::default()
     };
-    let title = format!("{} strips, each with its rulings", strips.len());
+    let title = format!("{}, each with its rulings", counted(strips.len(), "strip"));
     let subtitle = format!(
         "from strips to the mesh {} at most ({} of the diagonal), gaps {}, kinks {}°",
         number(measured.strips_to_reference.max),
@@ -339,7 +334,7 @@ pub fn deviation(view: &View<'_>, strips: &[Strip], measured: &Report, diagonal:
         mark: None,
         end_words: ["", ""],
     };
-    let subtitle = format!("strips and mesh, {} strips", strips.len());
+    let subtitle = format!("of the mesh from {}", counted(strips.len(), "strip"));
     Ok(view.drawn("deviation", subtitle, panel, Some(scale)))
 }
 
