@@ -342,25 +342,20 @@ enum Item {
     Piece { of: usize, ends: [DVec3; 2] },
 }
 
-/// The strokes of a panel in pieces no longer than faces, each as near as it is, and nearer by what a face it lies on can be nearer
-/// than its middle.
+/// The strokes of a panel in pieces no longer than faces, each as near as it is, and nearer by what a face beside it can be nearer.
 fn pieces(panel: &Panel<'_>, camera: &Camera) -> Vec<(f64, Item)> {
     let mesh = panel.mesh;
     if panel.overlay.strokes.is_empty() {
         return Vec::new();
     }
-    let middle = |mut numbers: Vec<f64>| {
-        numbers.sort_by(f64::total_cmp);
-        numbers.get(9 * numbers.len() / 10).copied().unwrap_or(1.0)
-    };
     let extent = |face: &Vec<u32>| {
         let corners = mesh.corners(face);
         let nearest = corners.iter().map(|&corner| camera.project(corner).1).fold(f64::NEG_INFINITY, f64::max);
         nearest - nearness(mesh, face, camera)
     };
-    let lift = middle(mesh.faces.iter().map(extent).collect());
+    let lift = 2.0 * mesh.faces.iter().map(extent).fold(0.0, f64::max);
     let first_edge = |face: &Vec<u32>| mesh.corners(face).first_chunk::<2>().map_or(0.0, |[a, b]| a.distance(*b));
-    let longest = middle(mesh.faces.iter().map(first_edge).collect()).max(f64::MIN_POSITIVE);
+    let longest = mesh.faces.iter().map(first_edge).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
     let mut found = Vec::new();
     for (of, stroke) in panel.overlay.strokes.iter().enumerate() {
         for pair in stroke.points.windows(2) {

@@ -313,6 +313,9 @@ pub struct PlanksArgs {
     /// How far planks reach beyond the rulings on both sides
     #[arg(long, value_name = "LENGTH", default_value_t = 0.0, allow_negative_numbers = true)]
     pub depth: f64,
+    /// Cut only those spans of strips that are beside this mesh (.obj, .off or .ply)
+    #[arg(long, value_name = "MESH")]
+    pub within: Option<PathBuf>,
     /// What a model unit is
     #[arg(long, value_name = "UNIT", value_enum, default_value = "m")]
     pub unit: Unit,

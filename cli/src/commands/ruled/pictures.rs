@@ -38,8 +38,8 @@ const MESH: Rgb = [0.93, 0.935, 0.94];
 /// Asymptotic curves are about so many diagonals apart.
 const SPACING: f64 = 1.0 / 22.0;
 /// Triangles of strips in pictures are this part of the diagonal large; those of zebra stripes this.
-const FINE: f64 = 1.0 / 70.0;
-const FINEST: f64 = 1.0 / 170.0;
+const FINE: f64 = 1.0 / 50.0;
+const FINEST: f64 = 1.0 / 90.0;
 /// A triangle is halved so often at most.
 const MOST_CUTS: u32 = 14;
 
@@ -228,8 +228,15 @@ pub fn parts(strips: &[Strip], trimmed: Option<&[Trimmed]>) -> Vec<Part> {
     }
 }
 
-/// Small triangles of strips, by halving their longest edges, each with its strip and the parameters of its middle.
-fn fine(strips: &[Strip], parts: &[Part], size: f64) -> (Mesh, Vec<(usize, [f64; 2])>) {
+/// A triangle of a strip.
+struct Place {
+    strip: usize,
+    /// The parameters of its corners.
+    corners: [[f64; 2]; 3],
+}
+
+/// Small triangles of strips, by halving their longest edges, each with points of its own.
+fn fine(strips: &[Strip], parts: &[Part], size: f64) -> (Mesh, Vec<Place>) {
     let (mut mesh, mut places) = (Mesh { points: Vec::new(), faces: Vec::new() }, Vec::new());
     for (k, (strip, part)) in strips.iter().zip(parts).enumerate() {
         let point = |[u, v]: [f64; 2]| strip.at(u, v).point;
@@ -248,7 +255,7 @@ fn fine(strips: &[Strip], parts: &[Part], size: f64) -> (Mesh, Vec<(usize, [f64;
             let first = mesh.points.len() as u32;
             mesh.points.extend(points);
             mesh.faces.push(vec![first, first + 1, first + 2]);
-            places.push((k, [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0)));
+            places.push(Place { strip: k, corners });
         }
     }
     (mesh, places)
@@ -296,7 +303,7 @@ pub fn strips(
     let edges = outlines(strips, parts);
     let overlay = Overlay {
         strokes: strokes(&pieces, RULING, 0.7).chain(strokes(&edges, INK, 1.8)).collect(),
-        face_colours: places.iter().map(|(strip, _)| SHADES[strip % 2]).collect(),
+        face_colours: places.iter().map(|of| SHADES[of.strip % 2]).collect(),
         is_smooth: true,
         ..Overlay::default()
     };
@@ -342,22 +349,47 @@ pub fn deviation(view: &View<'_>, strips: &[Strip], measured: &Report, diagonal:
 pub fn zebra(view: &View<'_>, strips: &[Strip], parts: &[Part], measured: &Report) -> Result<String> {
     let size = Mesh { points: view.mesh.points.clone(), faces: Vec::new() }.diagonal();
     let (mesh, places) = fine(strips, parts, FINEST * size);
-    let jets = places.iter().map(|&(strip, [u, v])| strips[strip].at(u, v));
-    let (points, normals): (Vec<DVec3>, Vec<DVec3>) = jets.map(|jet| (jet.point, jet.normal())).unzip();
+    let corners = places.iter().flat_map(|of| of.corners.map(|[u, v]| strips[of.strip].at(u, v)));
+    let (points, normals): (Vec<DVec3>, Vec<DVec3>) = corners.map(|jet| (jet.point, jet.normal())).unzip();
     let values = stripes(&points, &normals, Eye::Along(view.camera.sight()), &Stripes::default())?;
-    let [dark, light] = STRIPES;
-    let colour = |value: &f64| {
-        let share = (0.5 + 4.0 * value).clamp(0.0, 1.0);
-        std::array::from_fn(|i| dark[i] + share * (light[i] - dark[i]))
-    };
-    let overlay = Overlay { face_colours: values.iter().map(colour).collect(), is_smooth: true, ..Overlay::default() };
+    // Triangles are cut where stripes end.
+    let (mut drawn, mut face_colours) = (Mesh { points: Vec::new(), faces: Vec::new() }, Vec::new());
+    for face in &mesh.faces {
+        let corners = [0, 1, 2].map(|k| (points[face[k] as usize], values[face[k] as usize]));
+        for (sign, colour) in [(-1.0, STRIPES[0]), (1.0, STRIPES[1])] {
+            let part = side(corners, sign);
+            if part.len() > 2 {
+                let first = drawn.points.len() as u32;
+                drawn.faces.push((first..first + part.len() as u32).collect());
+                drawn.points.extend(part);
+                face_colours.push(colour);
+            }
+        }
+    }
+    let overlay = Overlay { face_colours, is_smooth: true, ..Overlay::default() };
     let subtitle = format!(
         "kinks between strips: {}° at most, {}° in the mean",
         number(measured.max_kink_deg),
         number(measured.mean_kink_deg)
     );
     let title = "reflected stripes: they break where strips meet at an angle".to_owned();
-    Ok(view.drawn("zebra stripes", subtitle, panel(&mesh, title, overlay), None))
+    Ok(view.drawn("zebra stripes", subtitle, panel(&drawn, title, overlay), None))
+}
+
+/// The part of a triangle where values, linear over it, have a sign.
+fn side(corners: [(DVec3, f64); 3], sign: f64) -> Vec<DVec3> {
+    let mut part = Vec::with_capacity(4);
+    for k in 0..3 {
+        let ((a, at_a), (b, at_b)) = (corners[k], corners[(k + 1) % 3]);
+        let is_in = |value: f64| if sign > 0.0 { value >= 0.0 } else { value < 0.0 };
+        if is_in(at_a) {
+            part.push(a);
+        }
+        if is_in(at_a) != is_in(at_b) {
+            part.push(a.lerp(b, at_a / (at_a - at_b)));
+        }
+    }
+    part
 }
 
 /// Planks as boxes; `plank_of` is the number of each face's plank in its strip.

@@ -1,14 +1,18 @@
 //! Planks of conoidal strips: sheets, boards as solids, a table; and `ruled planks`.
 
+use std::ops::Range;
+
 use anyhow::{Result, anyhow, bail};
 use serde_json::json;
 use shapeop::geometry::ruled::planks::{PlankOptions, Planks, planks, sheet};
+use shapeop::geometry::ruled::trim::{TrimOptions, Trimmed, trim};
 use shapeop::geometry::ruled::{Strip, file};
-use shapeop::mesh::Mesh;
-use shapeop::mesh::file::Format;
+use shapeop::mesh::file::{Format, read_source};
+use shapeop::mesh::reference::ReferenceMesh;
+use shapeop::mesh::{Mesh, TriangleMesh};
 
 use super::pictures;
-use super::places::in_options;
+use super::places::{Places, in_options};
 use super::report::{PlanksInReport, VERSION};
 use super::strips::title;
 use crate::Ending;
@@ -37,21 +41,44 @@ impl Asked {
     }
 }
 
-/// Cuts each strip and writes sheets, planks and solids. A strip that cannot be cut is told of, unless it is for an option.
-pub fn write(strips: &[Strip], asked: &Asked, name: &str, output: &mut Output) -> Result<Vec<PlanksInReport>> {
+/// The spans of each strip that are beside the mesh; none of a closed strip, or where nothing of it is.
+pub fn beside(strips: &[Strip], trimmed: &[Trimmed]) -> Vec<Option<Range<usize>>> {
+    let spans = |(strip, trimmed): (&Strip, &Trimmed)| {
+        let corners = || trimmed.pieces().iter().flatten().flatten().map(|at| at[0]);
+        let low = corners().fold(f64::INFINITY, f64::min).floor();
+        let high = corners().fold(f64::NEG_INFINITY, f64::max).ceil();
+        (high > low && !strip.basis().is_closed())
+            .then_some(low.max(0.0) as usize..strip.basis().spans().min(high as usize))
+    };
+    strips.iter().zip(trimmed).map(spans).collect()
+}
+
+/// Cuts each strip, over its spans if some are given, and writes sheets, planks and solids. A strip that cannot be cut is told of,
+/// unless it is for an option.
+pub fn write(
+    strips: &[Strip],
+    spans: &[Option<Range<usize>>],
+    asked: &Asked,
+    name: &str,
+    output: &mut Output,
+) -> Result<Vec<PlanksInReport>> {
     let options = PlankOptions { depth: asked.depth, ..PlankOptions::new(asked.thickness) };
     let (mut cut, mut told) = (Vec::new(), Vec::new());
     for (strip, of) in strips.iter().enumerate() {
-        match planks(of, &options) {
+        let spans = spans.get(strip).cloned().flatten();
+        let part = spans.clone().map(|spans| of.part(spans)).transpose()?;
+        let spans = spans.map(|spans| [spans.start, spans.end]);
+        match planks(part.as_ref().unwrap_or(of), &options) {
             Ok(found) => {
                 let heading = format!("{name}, strip {strip}");
                 output.sheet(strip, &sheet::sheet(&found, &heading, asked.millimetres())?)?;
-                told.push(in_report(strip, &found));
+                told.push(in_report(strip, spans, &found));
                 cut.push(found);
             }
             Err(error) if error.place().starts_with("options") => return Err(in_options(error)),
             Err(error) => told.push(PlanksInReport {
                 strip,
+                spans,
                 refusal: Some(error.to_string().trim_start_matches("strip: ").to_owned()),
                 planks: 0,
                 deviation_deg: 0.0,
@@ -74,11 +101,12 @@ pub fn write(strips: &[Strip], asked: &Asked, name: &str, output: &mut Output) -
     Ok(told)
 }
 
-fn in_report(strip: usize, found: &Planks) -> PlanksInReport {
+fn in_report(strip: usize, spans: Option<[usize; 2]>, found: &Planks) -> PlanksInReport {
     let most =
         |value: fn(&shapeop::geometry::ruled::planks::Plank) -> f64| found.planks.iter().map(value).fold(0.0, f64::max);
     PlanksInReport {
         strip,
+        spans,
         refusal: None,
         planks: found.planks.len(),
         deviation_deg: found.deviation_deg,
@@ -123,13 +151,22 @@ pub fn run(args: &PlanksArgs, is_quiet: bool) -> Result<Ending> {
     {
         return Err(in_options(error));
     }
+    let spans = match &args.within {
+        None => Vec::new(),
+        Some(path) => {
+            let source = read_source(path)?;
+            let places = Places { mesh: path, face_lines: &source.face_lines, levels: "--levels", curves: &[] };
+            let mesh = TriangleMesh::new(&source.mesh).map_err(|error| places.of(error))?;
+            beside(&strips, &trim(&strips, &ReferenceMesh::new(&mesh), &TrimOptions::default())?)
+        }
+    };
     let name = title(&args.strips);
     let stem = name.strip_suffix(".strips.json").or_else(|| name.strip_suffix(".json")).unwrap_or(&name);
     let stem = stem.strip_suffix(".ruled").unwrap_or(stem);
     let input = args.strips.with_file_name(format!("{stem}.json"));
     let mut output = Output::new(&args.place.out, &input, "ruled", args.place.picture)?;
     let asked = Asked { thickness: args.planks, depth: args.depth, unit: args.unit, format: args.place.format.into() };
-    let found = write(&strips, &asked, stem, &mut output)?;
+    let found = write(&strips, &spans, &asked, stem, &mut output)?;
     let refused: Vec<&PlanksInReport> = found.iter().filter(|of| of.refusal.is_some()).collect();
     if let (Some(first), true) = (refused.first(), refused.len() == found.len()) {
         bail!("{}: strips[{}]: {}", args.strips.display(), first.strip, first.refusal.as_deref().unwrap_or_default());

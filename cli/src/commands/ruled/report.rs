@@ -237,6 +237,8 @@ impl OptimisationInReport {
 #[derive(Serialize)]
 pub struct PlanksInReport {
     pub strip: usize,
+    /// The spans that were cut, from one knot to another: those beside the mesh; null: all.
+    pub spans: Option<[usize; 2]>,
     /// Why there are none; null if there are.
     pub refusal: Option<String>,
     pub planks: usize,
