@@ -23,7 +23,7 @@ Examples:
   shapeop ruled examples/ruled/roof.obj --boundaries geodesic --levels 8 --zebra     edges that a bent batten follows
   shapeop ruled examples/ruled/roof.obj --normal 1,0,0 --levels 8            edges in parallel planes, exactly
   shapeop ruled examples/ruled/roof.obj --planes 1,0,0,-1.5 --planes 1,0,0,0 --planes 1,0.2,0,1.5
-  shapeop ruled examples/ruled/roof.obj --boundaries conoidal --planks 0.15 --depth 0.05     strips of stacked planks
+  shapeop ruled examples/ruled/catenoid.obj --family 1 --boundaries conoidal --levels 5 --planks 0.03     stacked planks
   shapeop ruled examples/ruled/saddle.obj --curves examples/ruled/saddle_edges.obj --single     one strip between two curves
   shapeop ruled examples/ruled/tube.obj --levels 16                          a tube: strips all around
   shapeop ruled field examples/ruled/roof.obj                               only the directions that rulings can follow
@@ -69,13 +69,13 @@ negative torsion (a left-handed screw), family 1 positive; that does not depend 
     #[command(after_help = "\
 Examples:
   shapeop ruled check out/roof.ruled.strips.json examples/ruled/roof.obj
-  shapeop ruled check strips.json roof.obj --json")]
+  shapeop ruled check out/roof.ruled.strips.json examples/ruled/roof.obj --json")]
     Check(RuledCheckArgs),
     /// Cut conoidal strips into planks: sheets with dimensions, the boards as solids
     #[command(after_help = "\
 Examples:
-  shapeop ruled planks out/roof.ruled.strips.json --planks 0.15 --depth 0.05
-  shapeop ruled planks strips.json --planks 20 --unit mm
+  shapeop ruled planks out/catenoid.ruled.strips.json --planks 0.03 --depth 0.01
+  shapeop ruled planks out/catenoid.ruled.strips.json --planks 0.05 --within examples/ruled/catenoid.obj --unit cm
 
 The rulings of a conoidal strip are parallel to a plane, so it can be stacked from planks of one thickness: one SVG sheet per strip \
 in true scale. Strips whose rulings are not parallel to a plane are named: make them with --conoidal.")]

@@ -30,10 +30,8 @@ use crate::table::{aligned, number};
 /// Columns of quads in each span, and rows, of the mesh of strips that are not trimmed.
 const COLUMNS_AND_ROWS: [usize; 2] = [4, 5];
 
-/// How far the polygon along which the mesh of strips is cut may be off, over the diagonal: 0.1 mm in 10 m; and in pictures, where
-/// it is a fifth of a pixel.
+/// How far the polygon along which the mesh of strips is cut may be off, over the diagonal: 0.1 mm in 10 m.
 const MESH_TOLERANCE: f64 = 1e-5;
-const PICTURE_TOLERANCE: f64 = 2e-4;
 
 /// Strips and how they came about.
 pub struct Made {
@@ -70,11 +68,11 @@ pub fn write(job: &Job<'_>, made: Made, path: &Path, mut output: Output) -> Resu
     let clock = Instant::now();
     let progress = job.phase("files", 1);
     let format = args.output.place.format.into();
-    let cut = |tolerance: f64| trim(&made.strips, &reference, &TrimOptions { tolerance, ..TrimOptions::default() });
+    let cut = trim(&made.strips, &reference, &TrimOptions { tolerance: MESH_TOLERANCE, ..TrimOptions::default() })?;
     let mesh = if args.output.no_trim {
         export::mesh(&made.strips, COLUMNS_AND_ROWS[0], COLUMNS_AND_ROWS[1])?.0
     } else {
-        export::trimmed_mesh(&made.strips, &cut(MESH_TOLERANCE)?)?.0
+        export::trimmed_mesh(&made.strips, &cut)?.0
     };
     output.mesh(&mesh, format)?;
     output.text("strips", ".strips.json", &file::to_json(&made.strips))?;
@@ -92,7 +90,7 @@ pub fn write(job: &Job<'_>, made: Made, path: &Path, mut output: Output) -> Resu
     // What was asked for besides must not take the rest with it.
     let problem = if args.output.problem { write_problem(job, &made, &mut output) } else { Ok(()) };
     if output.wants_pictures() {
-        write_pictures(job, &made, &cut(PICTURE_TOLERANCE)?, &rulings, &measured, path, &mut output)?;
+        write_pictures(job, &made, &cut, &rulings, &measured, path, &mut output)?;
     }
     progress.finish();
     seconds.files = clock.elapsed().as_secs_f64();

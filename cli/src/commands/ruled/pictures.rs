@@ -39,7 +39,9 @@ const MESH: Rgb = [0.93, 0.935, 0.94];
 const SPACING: f64 = 1.0 / 22.0;
 /// Triangles of strips in pictures are this part of the diagonal large; those of zebra stripes this.
 const FINE: f64 = 1.0 / 50.0;
-const FINEST: f64 = 1.0 / 90.0;
+const FINEST: f64 = 1.0 / 120.0;
+/// Light tubes around a full turn.
+const TUBES: u32 = 16;
 /// A triangle is halved so often at most.
 const MOST_CUTS: u32 = 14;
 
@@ -351,7 +353,8 @@ pub fn zebra(view: &View<'_>, strips: &[Strip], parts: &[Part], measured: &Repor
     let (mesh, places) = fine(strips, parts, FINEST * size);
     let corners = places.iter().flat_map(|of| of.corners.map(|[u, v]| strips[of.strip].at(u, v)));
     let (points, normals): (Vec<DVec3>, Vec<DVec3>) = corners.map(|jet| (jet.point, jet.normal())).unzip();
-    let values = stripes(&points, &normals, Eye::Along(view.camera.sight()), &Stripes::default())?;
+    let tubes = Stripes { count: TUBES, ..Stripes::default() };
+    let values = stripes(&points, &normals, Eye::Along(view.camera.sight()), &tubes)?;
     // Triangles are cut where stripes end.
     let (mut drawn, mut face_colours) = (Mesh { points: Vec::new(), faces: Vec::new() }, Vec::new());
     for face in &mesh.faces {
