@@ -164,7 +164,8 @@ fn the_rulings_of_a_saddle_lie_on_it_and_the_report_is_true() {
     assert!((apart - told).abs() < 1e-4 && told < CHORD, "{apart} {told}");
     let trimmed = file::read(folder.path("saddle.ruled.obj")).unwrap();
     let coverage = area(&trimmed) / area(&mesh);
-    assert!((coverage - number(&report["measures"]["coverage"])).abs() < 1e-3 && coverage > 0.995, "{coverage}");
+    // Triangles between rulings that are twisted have a little more area.
+    assert!((coverage - number(&report["measures"]["coverage"])).abs() < 3e-3 && coverage > 0.995, "{coverage}");
     let diagonal = number(&report["mesh"]["diagonal"]);
     assert!((diagonal - 12_f64.sqrt()).abs() < 1e-9);
     assert!((number(&report["relative"]["mesh_to_strips_max"]) - told / diagonal).abs() < 1e-15);
@@ -271,6 +272,14 @@ fn side_conditions_and_bounds_hold() {
         for i in [0, 11] {
             let [before, after] = [a, b].map(|strip| (strip.control[1][i] - strip.control[0][i]).normalize());
             assert!(before.cross(after).length() < 1e-9);
+        }
+    }
+    // Of conoidal strips the part across the axis: no ruling vanishes.
+    let conoids = start(&["--conoidal", "--fixed-end-rulings", "--fixed-ends"]);
+    for (a, b) in before.iter().zip(&conoids) {
+        for i in [0, 11] {
+            let [before, after] = [a, b].map(|strip| strip.control[1][i] - strip.control[0][i]);
+            assert!(after.length() > 0.5 * before.length() && before.angle_between(after) < 0.3);
         }
     }
     start(&[]);
@@ -577,7 +586,6 @@ fn what_is_wrong_is_named() {
         (&[&roof, "--rulings", "1"], "--rulings: expected 2 to 100000, found 1"),
         (&[&roof, "--planks", "0"], "--planks: expected a finite number above 0, found 0"),
         (&[&roof, "--planks", "1", "--depth", "-1"], "--depth: expected a finite number of at least 0, found -1"),
-        (&[&roof, "--levels", "4", "--conoidal", "--fixed-end-rulings"], "--fixed-end-rulings: "),
         (&["check", &version, &roof], "version.json: version: expected 1, found 2"),
         (&["check", &none, &roof], "none.json: expected at least 1 strip, found none"),
         (&["check", &strips, &roof, "--feature-ratio", "0"], "--feature-ratio: expected a number above 0, found 0"),

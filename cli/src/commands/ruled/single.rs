@@ -15,7 +15,7 @@ use shapeop::mesh::{ReferenceSurface, TriangleMesh};
 
 use super::made::Made;
 use super::report::{BoundariesInReport, ConditionsInReport, OptimisationInReport, Seconds, StartInReport};
-use super::strips::{Job, end_rulings, optimisation_warnings, shown};
+use super::strips::{Job, axis_of, end_rulings, optimisation_warnings, shown};
 
 /// Points of the mesh that the strip is asked to cover at most.
 const MOST_COVERED: usize = 5_000;
@@ -120,7 +120,7 @@ fn conditions(strip: &Strip, job: &Job<'_>) -> Result<(Vec<Condition>, Condition
         conditions.extend(fixed);
     }
     if job.args.strips.fixed_end_rulings {
-        let fixed = end_rulings(0, strip);
+        let fixed = end_rulings(0, strip, axis_of(&conditions, 0));
         counts.fixed_end_rulings = fixed.len();
         conditions.extend(fixed);
     }

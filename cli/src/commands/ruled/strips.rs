@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
+use glam::DVec3;
 use shapeop::geometry::ruled::conditions::Condition;
 use shapeop::geometry::ruled::design::{Design, FieldOptions};
 use shapeop::geometry::ruled::optimise::{self, Optimised};
@@ -218,18 +219,30 @@ fn conditions(design: &Design, job: &Job<'_>) -> Result<(Vec<Condition>, Conditi
         counts.fixed_ends = conditions.len() - before;
     }
     if job.args.strips.fixed_end_rulings {
-        let found: Vec<Condition> = strips.iter().enumerate().flat_map(|(k, strip)| end_rulings(k, strip)).collect();
+        let axis = |k: usize| axis_of(&conditions, k);
+        let found: Vec<Condition> =
+            strips.iter().enumerate().flat_map(|(k, strip)| end_rulings(k, strip, axis(k))).collect();
         counts.fixed_end_rulings = found.len();
         conditions.extend(found);
     }
     Ok((conditions, counts))
 }
 
-/// The conditions that keep the directions of the first and the last ruling of an open strip.
-pub fn end_rulings(strip: usize, of: &Strip) -> Vec<Condition> {
+/// The axis to which all rulings of a strip are to be orthogonal, if any.
+pub fn axis_of(conditions: &[Condition], of: usize) -> Option<DVec3> {
+    conditions.iter().find_map(|condition| match *condition {
+        Condition::Conoidal { strip, axis } if strip == of => Some(axis),
+        _ => None,
+    })
+}
+
+/// The conditions that keep the directions of the first and the last ruling of an open strip; with an axis, those of them across it,
+/// as otherwise no ruling but one without length would meet both.
+pub fn end_rulings(strip: usize, of: &Strip, axis: Option<DVec3>) -> Vec<Condition> {
     let last = of.basis().count() - 1;
     let condition = |(end, i): (End, usize)| {
-        let direction = of.control(1)[i] - of.control(0)[i];
+        let ruling = of.control(1)[i] - of.control(0)[i];
+        let direction = axis.map_or(ruling, |axis| ruling.reject_from(axis));
         (direction.length() > 0.0).then_some(Condition::FixedEndRuling { strip, end, direction })
     };
     let ends = if of.basis().is_closed() { Vec::new() } else { vec![(End::Start, 0), (End::Finish, last)] };
