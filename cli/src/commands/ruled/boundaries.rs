@@ -107,7 +107,7 @@ fn spread(levels: &Levels, [low, high]: [f64; 2]) -> shapeop::error::Result<Vec<
     let (count, distance) = match levels {
         Levels::Values(values) => return Ok(values.clone()),
         Levels::Count(count) => (*count, (high - low) / *count as f64),
-        Levels::Width(width) => (((high - low) / width).round().max(1.0).min(1e6) as usize, *width),
+        Levels::Width(width) => (((high - low) / width).round().clamp(1.0, 1e6) as usize, *width),
     };
     if !(distance > 0.0 && distance.is_finite() && (1..=MOST_PLANES).contains(&count)) {
         let reason = format!("expected 1 to {MOST_PLANES} planes at a distance above 0, found {count} at {distance}");

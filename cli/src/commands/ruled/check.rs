@@ -78,9 +78,8 @@ pub fn run(args: &RuledCheckArgs, is_quiet: bool) -> Result<Ending> {
         ]);
     }
     let told: String = told.iter().map(|warning| format!("\n  warning: {warning}")).collect();
-    say(&format!("{start}\n\n{}\n\n{}\n{told}", aligned(&rows(&found, diagonal)), aligned(&table))
-        .trim_end()
-        .to_owned())?;
+    let (figures, strips) = (aligned(&rows(&found, diagonal)), aligned(&table));
+    say(format!("{start}\n\n{figures}\n\n{strips}\n{told}").trim_end())?;
     Ok(Ending::Done)
 }
 
