@@ -41,7 +41,7 @@ const SPACING: f64 = 1.0 / 22.0;
 const FINE: f64 = 1.0 / 50.0;
 const FINEST: f64 = 1.0 / 120.0;
 /// Light tubes around a full turn.
-const TUBES: u32 = 16;
+const TUBES: u32 = 20;
 /// A triangle is halved so often at most.
 const MOST_CUTS: u32 = 14;
 
