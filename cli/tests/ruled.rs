@@ -355,6 +355,10 @@ fn one_strip_is_made_between_two_drawn_curves() {
     let reversed = folder.write("reversed.obj", &lines.join("\n"));
     let deviations = [&edges, &reversed].map(|edges| {
         run(&folder, &[&saddle, "--curves", edges]);
+        // Strips stay between the curves, and are not drawn to where the mesh goes on.
+        for p in surfaces(&folder, "saddle")[0].control.iter().flatten() {
+            assert!((p.y.abs() - 0.8).abs() < 0.05, "{p}");
+        }
         number(&report(&folder, "saddle")["relative"]["strips_to_mesh_max"])
     });
     assert!(deviations[0] < 1e-3 && (deviations[0] - deviations[1]).abs() < 1e-12, "{deviations:?}");

@@ -15,13 +15,13 @@ use shapeop::mesh::{ReferenceSurface, TriangleMesh};
 
 use super::made::Made;
 use super::report::{BoundariesInReport, ConditionsInReport, OptimisationInReport, Seconds, StartInReport};
-use super::strips::{Job, axis_of, end_rulings, optimisation_warnings, shown};
-
-/// Points of the mesh that the strip is asked to cover at most.
-const MOST_COVERED: usize = 5_000;
+use super::strips::{Job, MOST_COVERED, axis_of, end_rulings, optimisation_warnings, shown};
 
 /// A point is beside the strip while its nearest point is not beyond the boundary by more than this part of the diagonal.
 const BESIDE: f64 = 1e-6;
+
+/// A point beside a strip belongs to it while it is nearer than this part of the diagonal.
+const NEAR: f64 = 0.1;
 
 pub fn make(job: &Job<'_>) -> Result<Made> {
     let (args, asked) = (job.args, job.asked);
@@ -44,7 +44,7 @@ pub fn make(job: &Job<'_>) -> Result<Made> {
     let started = start(&boundaries, &is_closed, Rulings::Proportional, job.start_options()).map_err(in_curves)?;
     seconds.strips = clock.elapsed().as_secs_f64();
     let strip = &started.strips[0];
-    let cover = beside(strip, &mesh)?;
+    let cover = beside(&started.strips, &mesh)?;
     let (conditions, counts) = conditions(strip, job)?;
     let clock = Instant::now();
     let progress = job.phase("optimisation", asked.optimise.max_iterations);
@@ -92,10 +92,15 @@ pub fn make(job: &Job<'_>) -> Result<Made> {
     })
 }
 
-/// The points of the mesh whose nearest points are on the strip, not on its rim: those that it is to cover.
-fn beside(strip: &Strip, mesh: &TriangleMesh) -> Result<Vec<DVec3>> {
-    let surface = strip.surface()?;
-    let is_beside = |point: &DVec3| surface.nearest(*point).overhang <= BESIDE * mesh.diagonal();
+/// The points of the mesh whose nearest points are on one of the strips, not on its rim: those that they are to cover.
+pub fn beside(strips: &[Strip], mesh: &TriangleMesh) -> Result<Vec<DVec3>> {
+    let surfaces = strips.iter().map(Strip::surface).collect::<shapeop::error::Result<Vec<_>>>()?;
+    let is_beside = |point: &DVec3| {
+        surfaces.iter().any(|surface| {
+            let foot = surface.nearest(*point);
+            foot.overhang <= BESIDE * mesh.diagonal() && foot.point.distance(*point) < NEAR * mesh.diagonal()
+        })
+    };
     Ok(points_to_cover(mesh, MOST_COVERED).into_iter().filter(is_beside).collect())
 }
 
