@@ -98,8 +98,8 @@ impl Strip {
         patterns::parametric_surface(columns, rows, [0.0, self.length_u()], [0.0, 1.0], |u, v| self.at(u, v).point)
     }
 
-    /// The part of an open strip over some of its spans, as a strip of its own: the same surface up to round-off, since between
-    /// whole knots its boundaries are splines over these.
+    /// The part of an open strip over some of its spans, as a strip of its own: the same surface, to 1e-9 of its size at least, since
+    /// between whole knots its boundaries are splines over these.
     ///
     /// # Errors
     /// A closed strip (`strip`), or spans that it does not have, or none (`spans`).
@@ -169,7 +169,7 @@ mod tests {
             for k in 0..=30 {
                 let (u, v) = (f64::from(k) / 30.0 * spans.len() as f64, 0.3);
                 let there = strip.at(spans.start as f64 + u, v).point;
-                assert!(part.at(u, v).point.distance(there) < 1e-12, "{spans:?} {u}");
+                assert!(part.at(u, v).point.distance(there) < 1e-9, "{spans:?} {u}");
             }
         }
         for spans in [2..2, 3..7] {
