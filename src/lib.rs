@@ -87,5 +87,9 @@ struct AddingAConstraint;
 struct SuperCanalSurfaces;
 
 #[cfg(doctest)]
+#[doc = include_str!("../docs/ruled.md")]
+struct RuledFreeForms;
+
+#[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

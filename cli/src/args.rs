@@ -2,6 +2,7 @@
 
 pub mod canal;
 pub mod links;
+pub mod ruled;
 
 use std::path::PathBuf;
 
@@ -30,6 +31,7 @@ Examples:
   shapeop solve problem.json                     any set of constraints
   shapeop explore problem.json --handles moves.json   a drag, hard constraints met all the way
   shapeop canal                                  surfaces of planar circular quads from curves
+  shapeop ruled roof.obj                         strips of straight lines for a surface curved like a saddle
   shapeop types                                  the constraints there are
 
 Files: OBJ, OFF and PLY with polygons of any size. The order of points and faces stays as it is.
@@ -156,6 +158,8 @@ of the farthest corner from the best-fit plane over the face's mean edge. Faces 
     Check(CheckArgs),
     /// Super-canal surfaces: planar circular quads from curves; panels and beams for the workshop
     Canal(canal::CanalArgs),
+    /// Ruled free forms: strips of straight lines for a surface curved like a saddle; planks for the workshop
+    Ruled(Box<ruled::RuledArgs>),
     /// List the constraint types, or explain one
     #[command(after_help = "\
 Examples:

@@ -52,6 +52,11 @@ impl Camera {
         seen.sum::<f64>()
     }
 
+    /// The direction from the eye to the middle of the model.
+    pub fn sight(&self) -> DVec3 {
+        -self.toward
+    }
+
     /// Where `point` is on the screen, and how near the eye it is.
     pub fn project(&self, point: DVec3) -> (DVec2, f64) {
         let offset = (point - self.middle) / self.radius;

@@ -47,6 +47,16 @@ impl Curve {
         Self::new(name, points, is_called_closed)
     }
 
+    /// Reads the curves of a file: of an OBJ file all its polylines, otherwise the one that it holds.
+    pub fn read_all(path: &Path) -> Result<Vec<Self>> {
+        if extension(path) != "obj" {
+            return Ok(vec![Self::read(path)?]);
+        }
+        let name = path.display().to_string();
+        let polylines = decode_polylines(&bytes_of(path)?, &name)?;
+        polylines.into_iter().map(|points| Self::new(name.clone(), points, false)).collect()
+    }
+
     fn new(name: String, mut points: Vec<DVec3>, is_called_closed: bool) -> Result<Self> {
         let least = if is_called_closed { 3 } else { 2 };
         if points.len() < least {

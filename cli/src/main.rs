@@ -63,6 +63,7 @@ fn main() -> ExitCode {
         Command::Explore(args) => commands::explore::run(&args, is_quiet),
         Command::Check(args) => commands::check::run(&args, is_quiet),
         Command::Canal(args) => commands::canal::run(&args.command, is_quiet),
+        Command::Ruled(args) => commands::ruled::run(&args, is_quiet),
         Command::Types(args) => commands::types::run(&args, is_quiet),
     };
     match ending {

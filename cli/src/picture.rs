@@ -26,6 +26,8 @@ const LEGEND_HEIGHT: f64 = 260.0;
 const MAX_ASPECT: f64 = 1.1;
 /// The share of a scale from which on a colour differs from that of 0.
 const SEEN: f64 = 0.02;
+/// A segment of a stroke is cut in so many pieces at most.
+const MOST_PIECES: f64 = 200.0;
 const INK: &str = "#1f2430";
 const FAINT: &str = "#667085";
 const HANDLE: &str = "#0b6fb8";
@@ -62,6 +64,21 @@ pub struct Overlay {
     pub thin_curves: Vec<Vec<DVec3>>,
     /// Faces in a colour that warns.
     pub marked: Vec<usize>,
+    /// Lines on the mesh, hidden where it hides them.
+    pub strokes: Vec<Stroke>,
+    /// A colour for each face, where there are no values.
+    pub face_colours: Vec<Rgb>,
+    /// Draws no edges of faces: for meshes whose faces mean nothing.
+    pub is_smooth: bool,
+}
+
+/// A line on a mesh.
+#[derive(Clone, Debug)]
+pub struct Stroke {
+    pub points: Vec<DVec3>,
+    pub colour: &'static str,
+    /// In units of the picture.
+    pub width: f64,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -108,14 +125,29 @@ struct Room {
 
 impl Picture<'_> {
     pub fn to_svg(&self) -> String {
+        self.seen_by(None)
+    }
+
+    /// The same from a given place: for pictures that are to be compared.
+    pub fn to_svg_from(&self, camera: &Camera) -> String {
+        self.seen_by(Some(camera))
+    }
+
+    fn seen_by(&self, camera: Option<&Camera>) -> String {
         let targets = |panel: &Panel<'_>| panel.handles.iter().map(|[_, target]| *target).collect::<Vec<_>>();
         let curves = |panel: &Panel<'_>| [panel.overlay.curves.concat(), panel.overlay.thin_curves.concat()].concat();
-        let points = |panel: &Panel<'_>| [panel.mesh.points.clone(), targets(panel), curves(panel)].concat();
+        let strokes =
+            |panel: &Panel<'_>| panel.overlay.strokes.iter().flat_map(|s| s.points.clone()).collect::<Vec<_>>();
+        let points =
+            |panel: &Panel<'_>| [panel.mesh.points.clone(), targets(panel), curves(panel), strokes(panel)].concat();
         let all_points: Vec<DVec3> = self.panels.iter().flat_map(points).collect();
-        // The last: a cloth shows itself when it hangs, not while it lies.
-        let normals: Vec<DVec3> = self.panels.last().into_iter().flat_map(|panel| normals_of(panel.mesh)).collect();
-        let camera = Camera::fitting(&all_points, &normals);
-        let common = Frame::of(&all_points, &camera);
+        let fitting = || {
+            // The last: a cloth shows itself when it hangs, not while it lies.
+            let normals: Vec<DVec3> = self.panels.last().into_iter().flat_map(|panel| normals_of(panel.mesh)).collect();
+            Camera::fitting(&all_points, &normals)
+        };
+        let camera = &camera.cloned().unwrap_or_else(fitting);
+        let common = Frame::of(&all_points, camera);
         let size = common.size;
 
         let columns = match self.panels.len() {
@@ -147,8 +179,8 @@ impl Picture<'_> {
                 width: panel_width,
                 height: panel_height,
             };
-            let frame = if self.fits_each { Frame::of(&panel.mesh.points, &camera) } else { common };
-            document = document.add(self.draw(panel, &room, &camera, frame));
+            let frame = if self.fits_each { Frame::of(&panel.mesh.points, camera) } else { common };
+            document = document.add(self.draw(panel, &room, camera, frame));
         }
         if let Some(scale) = &self.scale {
             document = document.add(legend_of(scale, WIDTH - MARGIN - 92.0, LEGEND_TOP));
@@ -214,27 +246,38 @@ impl Picture<'_> {
         match (&self.scale, panel.values.get(index)) {
             _ if panel.on == On::Faces && panel.overlay.marked.contains(&index) => MARKED,
             (Some(scale), Some(&value)) => scale.colour(value),
-            _ => PLAIN,
+            _ => panel.overlay.face_colours.get(index).copied().unwrap_or(PLAIN),
         }
     }
 
     fn draw_faces(&self, group: Group, panel: &Panel<'_>, camera: &Camera, place: &dyn Fn(DVec3) -> DVec2) -> Group {
         let mesh = panel.mesh;
-        let mut order: Vec<(f64, usize)> =
-            mesh.faces.iter().enumerate().map(|(i, face)| (nearness(mesh, face, camera), i)).collect();
-        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut order: Vec<(f64, Item)> =
+            mesh.faces.iter().enumerate().map(|(i, face)| (nearness(mesh, face, camera), Item::Face(i))).collect();
+        order.extend(pieces(panel, camera));
+        // Stable: of equals the faces first.
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
         let edge = typical_edge(mesh, place);
         // Thin against the faces; in a dense mesh so thin that the colours are seen.
-        let stroke = (0.03 * edge).clamp(0.12, 0.9);
+        let stroke = if panel.overlay.is_smooth { 0.8 } else { (0.03 * edge).clamp(0.12, 0.9) };
         let mut faces = group;
-        for (_, i) in order {
+        for (_, item) in order {
+            let i = match item {
+                Item::Face(i) => i,
+                Item::Piece { of, ends } => {
+                    let stroke = &panel.overlay.strokes[of];
+                    let [a, b] = ends.map(place);
+                    faces = faces.add(line(a, b, stroke.colour, stroke.width));
+                    continue;
+                }
+            };
             let corners = mesh.corners(&mesh.faces[i]);
             let fill = hex(self.colour(panel, i), camera.light(newell_normal(&corners)));
             let polygon = Polygon::new()
                 .set("points", coordinates(corners.iter().map(|&corner| place(corner))))
                 .set("fill", fill.clone());
             // A stroke in its own colour closes the seams between faces that are too small for lines.
-            let is_dense = edge < 3.0;
+            let is_dense = edge < 3.0 || panel.overlay.is_smooth;
             let line = match () {
                 () if is_dense => fill,
                 // A dark line is lost on a dark face.
@@ -291,6 +334,40 @@ impl Picture<'_> {
         }
         drawing
     }
+}
+
+/// A face, or a piece of a stroke.
+enum Item {
+    Face(usize),
+    Piece { of: usize, ends: [DVec3; 2] },
+}
+
+/// The strokes of a panel in pieces no longer than faces, each as near as it is, and nearer by what a face beside it can be nearer.
+fn pieces(panel: &Panel<'_>, camera: &Camera) -> Vec<(f64, Item)> {
+    let mesh = panel.mesh;
+    if panel.overlay.strokes.is_empty() {
+        return Vec::new();
+    }
+    let extent = |face: &Vec<u32>| {
+        let corners = mesh.corners(face);
+        let nearest = corners.iter().map(|&corner| camera.project(corner).1).fold(f64::NEG_INFINITY, f64::max);
+        nearest - nearness(mesh, face, camera)
+    };
+    let lift = 2.0 * mesh.faces.iter().map(extent).fold(0.0, f64::max);
+    let first_edge = |face: &Vec<u32>| mesh.corners(face).first_chunk::<2>().map_or(0.0, |[a, b]| a.distance(*b));
+    let longest = mesh.faces.iter().map(first_edge).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+    let mut found = Vec::new();
+    for (of, stroke) in panel.overlay.strokes.iter().enumerate() {
+        for pair in stroke.points.windows(2) {
+            let count = (pair[0].distance(pair[1]) / longest).ceil().clamp(1.0, MOST_PIECES) as usize;
+            for k in 0..count {
+                let at = |k: usize| pair[0].lerp(pair[1], k as f64 / count as f64);
+                let ends = [at(k), at(k + 1)];
+                found.push((camera.project(ends[0].midpoint(ends[1])).1 + lift, Item::Piece { of, ends }));
+            }
+        }
+    }
+    found
 }
 
 /// A face with its coloured edges, or an edge alone.

@@ -160,7 +160,7 @@ fn lengths(mesh: &Mesh, edges: &[[u32; 2]]) -> Vec<f64> {
 }
 
 /// The next of 1, 2, 5 times a power of ten, so that the ticks are numbers that one reads.
-fn round_up(value: f64) -> f64 {
+pub fn round_up(value: f64) -> f64 {
     if !(value > 0.0 && value.is_finite()) {
         return 1.0;
     }

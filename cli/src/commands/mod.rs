@@ -5,5 +5,6 @@ pub mod check;
 pub mod demo;
 pub mod explore;
 pub mod recipe;
+pub mod ruled;
 pub mod solve;
 pub mod types;

@@ -169,8 +169,7 @@ pub fn report(
         .par_iter()
         .map(|&joint| joints::joint(strips, joint, &inside, options.samples_along))
         .collect::<Result<_>>()?;
-    let unknown = || Error::new(Status::InvalidValue, "expected strips whose points are finite").at("strips");
-    let nearest = NearestStrip::new(strips).ok_or_else(unknown)?;
+    let nearest = nearest_strip(strips)?;
     let counter = Counter { nearest: &nearest, tolerance: inside.tolerance, diagonal: mesh.diagonal() };
     let triangle_mesh = mesh.mesh();
     let (distances, counts): (Vec<(DVec3, f64, f64)>, Vec<u32>) = (0..triangle_mesh.points().len())
@@ -184,6 +183,20 @@ pub fn report(
         .unzip();
     let covered = cover(triangle_mesh, &counter, &counts);
     Ok(summed_up(strips, &trimmed, sums, joints, &distances, (triangle_mesh.total_area(), covered), options))
+}
+
+/// How far points are from the nearest of some strips, in model units.
+///
+/// # Errors
+/// No strip, or one whose points are not finite (`strips`).
+pub fn distances(points: &[DVec3], strips: &[Strip]) -> Result<Vec<f64>> {
+    let nearest = nearest_strip(strips)?;
+    Ok(points.par_iter().map(|&point| nearest.nearest(point).point.distance(point)).collect())
+}
+
+fn nearest_strip(strips: &[Strip]) -> Result<NearestStrip<'_>> {
+    let unknown = || Error::new(Status::InvalidValue, "expected strips whose points are finite, found others or none");
+    NearestStrip::new(strips).ok_or_else(|| unknown().at("strips"))
 }
 
 fn summed_up(

@@ -1,9 +1,11 @@
 //! A ruled strip: two boundaries that are cubic B-splines, joined by straight lines.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
-use crate::error::{Error, Result};
-use crate::mesh::curve::{BSpline, CubicBasis};
+use crate::error::{Error, Result, Status};
+use crate::mesh::curve::{BSpline, CubicBasis, Curve, fit};
 use crate::mesh::reference::SurfaceJet;
 use crate::mesh::{Mesh, patterns};
 
@@ -93,6 +95,29 @@ impl Strip {
         patterns::parametric_surface(columns, rows, [0.0, self.length_u()], [0.0, 1.0], |u, v| self.at(u, v).point)
     }
 
+    /// The part of an open strip over some of its spans, as a strip of its own: the same surface, to 1e-9 of its size at least, since
+    /// between whole knots its boundaries are splines over these.
+    ///
+    /// # Errors
+    /// A closed strip (`strip`), or spans that it does not have, or none (`spans`).
+    pub fn part(&self, spans: Range<usize>) -> Result<Self> {
+        if self.basis().is_closed() {
+            return Err(Error::new(Status::InvalidValue, "expected an open strip, found a closed one").at("strip"));
+        }
+        if spans.is_empty() || spans.end > self.basis().spans() {
+            let reason = format!("expected some of 0..{}, found {spans:?}", self.basis().spans());
+            return Err(Error::new(Status::IndexOutOfRange, reason).at("spans"));
+        }
+        let basis = CubicBasis::new(spans.len() + 3, false)?;
+        let parameters: Vec<f64> = (0..=4 * spans.len()).map(|k| 0.25 * k as f64).collect();
+        let side = |side: usize| {
+            let point = |u: &f64| self.boundary(side).point(spans.start as f64 + u);
+            let points: Vec<DVec3> = parameters.iter().map(point).collect();
+            Ok(fit(basis.clone(), &parameters, &points)?.control().to_vec())
+        };
+        Self::new(basis.clone(), [side(0)?, side(1)?])
+    }
+
     /// Its area in square model units: the integral of `|S_u × S_v|`, by Gauss's rule in each span.
     pub fn area(&self) -> f64 {
         let in_span = |span: usize| -> f64 {
@@ -115,7 +140,6 @@ impl Strip {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Status;
     use crate::geometry::ruled::coverage::NearestStrip;
 
     /// The saddle z = xy over [−1, 1]² with straight rulings: control points of a line at its Greville abscissae.
@@ -125,6 +149,28 @@ mod tests {
         let x = |i: usize| 2.0 * (knots[i + 1] + knots[i + 2] + knots[i + 3]) / (3.0 * spans) - 1.0;
         let control = [-1.0, 1.0].map(|y| (0..count).map(|i| DVec3::new(x(i), y, x(i) * y)).collect());
         Strip::new(basis, control).unwrap()
+    }
+
+    #[test]
+    fn a_part_is_the_same_surface() {
+        let wavy =
+            |i: usize, side: f64| DVec3::new(i as f64, (1.7 * i as f64).sin() + side, side * (0.9 * i as f64).cos());
+        let control = |side: f64| (0..9).map(|i| wavy(i, side)).collect::<Vec<_>>();
+        let strip = Strip::new(CubicBasis::new(9, false).unwrap(), [control(0.0), control(1.0)]).unwrap();
+        for spans in [0..6, 1..4, 5..6] {
+            let part = strip.part(spans.clone()).unwrap();
+            assert_eq!(part.basis().spans(), spans.len());
+            for k in 0..=30 {
+                let (u, v) = (f64::from(k) / 30.0 * spans.len() as f64, 0.3);
+                let there = strip.at(spans.start as f64 + u, v).point;
+                assert!(part.at(u, v).point.distance(there) < 1e-9, "{spans:?} {u}");
+            }
+        }
+        for spans in [2..2, 3..7] {
+            assert_eq!(strip.part(spans).unwrap_err().place(), "spans");
+        }
+        let closed = Strip::new(CubicBasis::new(6, true).unwrap(), [0, 1].map(|k| strip.control(k)[..6].to_vec()));
+        assert_eq!(closed.unwrap().part(0..2).unwrap_err().place(), "strip");
     }
 
     #[test]

@@ -206,7 +206,8 @@ pub fn write(command: &str, input: &Path, made: Made, args: &CanalOutputArgs, is
     let family = surface.family();
     if output.wants_pictures() {
         let curves_shown = curves.iter().map(|(_, curve, _)| curve.points.clone()).collect();
-        let overlay = Overlay { curves: curves_shown, thin_curves: drawn, marked: measures.marked() };
+        let overlay =
+            Overlay { curves: curves_shown, thin_curves: drawn, marked: measures.marked(), ..Overlay::default() };
         let title = format!("{}: {command}", file_name(input));
         output.picture("picture", &picture(title, &family, &mesh, overlay, &measures))?;
     }

@@ -12,6 +12,8 @@ mod transform;
 
 use anyhow::Result;
 
+pub use made::in_json;
+
 use crate::Ending;
 use crate::args::canal::CanalCommand;
 
