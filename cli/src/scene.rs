@@ -6,12 +6,12 @@
 
 use std::path::Path;
 
+use crate::colours::{Rgb, hex};
+use crate::raster;
 use anyhow::Result;
 use glam::{DVec2, DVec3};
 use shapeop::geometry::circle::Circle;
 use shapeop::mesh::Grid;
-use shapeop_cli::colours::{Rgb, hex};
-use shapeop_cli::raster;
 use svg::Document;
 use svg::node::element::{Polygon, Polyline, Rectangle, Text};
 
