@@ -30,11 +30,9 @@ impl Shape {
         Ok(parametric_surface(columns, rows, self.ranges[0], self.ranges[1], |u, v| self.point(u, v))?)
     }
 
-    /// The same with all quads split along one diagonal: on a surface of revolution both are as long, but for round-off.
+    /// The same of triangles ([`split`]).
     pub fn split_mesh(&self, columns: usize, rows: usize) -> Result<Mesh> {
-        let Mesh { points, faces } = self.mesh(columns, rows)?;
-        let halves = faces.iter().flat_map(|f| [vec![f[0], f[1], f[2]], vec![f[0], f[2], f[3]]]);
-        Ok(Mesh { points, faces: halves.collect() })
+        Ok(split(self.mesh(columns, rows)?))
     }
 
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
@@ -44,12 +42,6 @@ impl Shape {
     /// The surface itself, to be near to.
     pub fn surface(&self) -> Result<Surface<'_>> {
         Ok(ParametricSurface::new(self.ranges, [41, 41], &*self.jet)?)
-    }
-
-    /// As [`Shape::surface`], and so much more of it on all sides, over the length of its ranges.
-    pub fn surface_beyond(&self, part: f64) -> Result<Surface<'_>> {
-        let ranges = self.ranges.map(|[low, high]| [low - part * (high - low), high + part * (high - low)]);
-        Ok(ParametricSurface::new(ranges, [61, 61], &*self.jet)?)
     }
 }
 
@@ -91,6 +83,12 @@ pub fn conoid(lift: f64) -> Shape {
             second: [s * (dd * around - d * d * out), d * around, second * DVec3::Z],
         }
     })
+}
+
+/// A mesh with all its quads split along one diagonal: where both are as long but for round-off, the shorter one is any.
+pub fn split(mesh: Mesh) -> Mesh {
+    let halves = mesh.faces.iter().flat_map(|f| [vec![f[0], f[1], f[2]], vec![f[0], f[2], f[3]]]);
+    Mesh { faces: halves.collect(), points: mesh.points }
 }
 
 /// A mesh that closes around: `point` gets the angle and the part of the height, 0 to 1.

