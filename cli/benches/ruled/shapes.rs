@@ -70,19 +70,42 @@ pub fn free_form(part: f64, halves: [f64; 2]) -> Shape {
 }
 
 /// The conoid (s cos φ, s sin φ, t) with φ = t + 0.3 sin t, for t from 0 to 2 and s from 1 to 2; its rulings are parallel to the
-/// xy plane. `lift` bends them: to z is added `lift` · s (s − 1) (s − 2).
-pub fn conoid(lift: f64) -> Shape {
+/// xy plane.
+pub fn conoid() -> Shape {
+    bent_conoid(0.0, 0.0)
+}
+
+/// The conoid with rulings that are tilted and bent: to z is added `tilt` · (s − 1) sin 2t + `lift` · s (s − 1) (s − 2).
+pub fn bent_conoid(tilt: f64, lift: f64) -> Shape {
     Shape::new("conoid", [[0.0, 2.0], [1.0, 2.0]], move |t, s| {
         let (phi, d, dd) = (t + 0.3 * t.sin(), 1.0 + 0.3 * t.cos(), -0.3 * t.sin());
         let (out, around) = (DVec3::new(phi.cos(), phi.sin(), 0.0), DVec3::new(-phi.sin(), phi.cos(), 0.0));
-        let [z, first, second] =
-            [lift * s * (s - 1.0) * (s - 2.0), lift * (3.0 * s * s - 6.0 * s + 2.0), lift * (6.0 * s - 6.0)];
+        let (sin, cos) = (2.0 * t).sin_cos();
+        let z = tilt * (s - 1.0) * sin + lift * s * (s - 1.0) * (s - 2.0);
+        let by_s = tilt * sin + lift * (3.0 * s * s - 6.0 * s + 2.0);
+        let [tt, ts, ss] = [-4.0 * tilt * (s - 1.0) * sin, 2.0 * tilt * cos, lift * (6.0 * s - 6.0)];
         SurfaceJet {
             point: s * out + (t + z) * DVec3::Z,
-            first: [s * d * around + DVec3::Z, out + first * DVec3::Z],
-            second: [s * (dd * around - d * d * out), d * around, second * DVec3::Z],
+            first: [s * d * around + (1.0 + 2.0 * tilt * (s - 1.0) * cos) * DVec3::Z, out + by_s * DVec3::Z],
+            second: [s * (dd * around - d * d * out) + tt * DVec3::Z, d * around + ts * DVec3::Z, ss * DVec3::Z],
         }
     })
+}
+
+/// A roof: z = 0.3 (x² − y²) + 0.06 (x³ − 3xy²), steeper at one end; its asymptotic curves run along both diagonals.
+pub fn roof() -> Shape {
+    let height = |x: f64, y: f64| {
+        let (a, b) = (0.3, 0.06);
+        [
+            a * (x * x - y * y) + b * (x.powi(3) - 3.0 * x * y * y),
+            2.0 * a * x + 3.0 * b * (x * x - y * y),
+            -2.0 * a * y - 6.0 * b * x * y,
+            2.0 * a + 6.0 * b * x,
+            -6.0 * b * y,
+            -2.0 * a - 6.0 * b * x,
+        ]
+    };
+    Shape::new("roof", [[-1.4, 1.6], [-1.0, 1.0]], surfaces::graph(height))
 }
 
 /// A mesh with all its quads split along one diagonal: where both are as long but for round-off, the shorter one is any.

@@ -24,7 +24,7 @@ pub fn group() -> Result<Group> {
         "The directions of a conoid are on one great circle; those of a catenoid cover a part of the sphere.",
     );
     for n in [21, 41] {
-        let mesh = TriangleMesh::new(&conoid(0.0).mesh(n, n)?)?;
+        let mesh = TriangleMesh::new(&conoid().mesh(n, n)?)?;
         let found = AsymptoticDirections::new(&mesh, &Options::default())?;
         // The family that runs along the rulings.
         let tilt = |family: usize| -> Result<f64> { Ok(found.family(family)?.iter().map(|a| a.z * a.z).sum()) };

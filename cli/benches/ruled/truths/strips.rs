@@ -112,7 +112,7 @@ pub fn exact() -> Result<Group> {
 }
 
 fn recovered_conoid(group: &mut Group) -> Result<()> {
-    let shape = conoid(0.0);
+    let shape = conoid();
     let surface = shape.surface()?;
     let curve = |s: f64| -> Vec<DVec3> { (0..=4000).map(|i| shape.point(f64::from(i) / 2000.0, s)).collect() };
     let (first, second, cover) = (curve(1.0), curve(2.0), shape.mesh(41, 9)?.points);
