@@ -31,18 +31,22 @@ const CAPTION: f64 = 52.0;
 const CAPTION_LINE: f64 = 18.0;
 /// The eye's distance over the radius of what is seen.
 const DISTANCE: f64 = 7.0;
+/// Shades from black to white.
+const SHADES: f64 = 96.0;
 /// How much nearer lines are than they are, over that radius.
 const LIFT: f64 = 0.03;
 
 /// A part of a drawing.
+#[derive(Clone, Debug)]
 enum Part {
-    Face { corners: Vec<DVec3>, colour: Rgb, opacity: f64, edge: f64 },
+    Face { corners: Vec<DVec3>, colour: Rgb, opacity: f64, edge: f64, is_lit: bool },
     Line { ends: [DVec3; 2], colour: Rgb, width: f64 },
     Dot { at: DVec3, colour: Rgb, radius: f64 },
     Label { at: DVec3, words: String, colour: Rgb },
 }
 
 /// One view.
+#[derive(Clone, Debug)]
 pub struct View {
     parts: Vec<Part>,
     /// A drawing in place of the parts, and how high it is over its width.
@@ -94,13 +98,19 @@ impl View {
     }
 
     pub fn face(mut self, corners: &[DVec3], colour: Rgb, opacity: f64) -> Self {
-        self.parts.push(Part::Face { corners: corners.to_vec(), colour, opacity, edge: 0.6 });
+        self.parts.push(Part::Face { corners: corners.to_vec(), colour, opacity, edge: 0.6, is_lit: true });
         self
     }
 
     /// A face without edges, as one of many that make a smooth surface.
     pub fn smooth_face(mut self, corners: &[DVec3], colour: Rgb) -> Self {
-        self.parts.push(Part::Face { corners: corners.to_vec(), colour, opacity: 1.0, edge: 0.0 });
+        self.parts.push(Part::Face { corners: corners.to_vec(), colour, opacity: 1.0, edge: 0.0, is_lit: true });
+        self
+    }
+
+    /// As [`View::smooth_face`], in one colour wherever the light comes from.
+    pub fn flat_face(mut self, corners: &[DVec3], colour: Rgb) -> Self {
+        self.parts.push(Part::Face { corners: corners.to_vec(), colour, opacity: 1.0, edge: 0.0, is_lit: false });
         self
     }
 
@@ -115,7 +125,7 @@ impl View {
         let edge = (12.0 / (grid.quads().count() as f64).sqrt()).clamp(0.25, 0.9);
         for (i, quad) in grid.quads().enumerate() {
             let corners = quad.map(|corner| grid.points()[corner]).to_vec();
-            self.parts.push(Part::Face { corners, colour: colour(i), opacity, edge });
+            self.parts.push(Part::Face { corners, colour: colour(i), opacity, edge, is_lit: true });
         }
         self
     }
@@ -123,7 +133,7 @@ impl View {
     /// The faces of a mesh, each in its colour, with edges of this width.
     pub fn mesh(mut self, mesh: &Mesh, opacity: f64, edge: f64, colour: &dyn Fn(usize) -> Rgb) -> Self {
         for (i, face) in mesh.faces.iter().enumerate() {
-            self.parts.push(Part::Face { corners: mesh.corners(face), colour: colour(i), opacity, edge });
+            self.parts.push(Part::Face { corners: mesh.corners(face), colour: colour(i), opacity, edge, is_lit: true });
         }
         self
     }
@@ -167,7 +177,7 @@ impl View {
         for i in 0..36 {
             for j in 0..18 {
                 let corners = vec![at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-                self.parts.push(Part::Face { corners, colour, opacity, edge: 0.0 });
+                self.parts.push(Part::Face { corners, colour, opacity, edge: 0.0, is_lit: true });
             }
         }
         self
@@ -242,7 +252,7 @@ impl Scene {
     /// Writes `folder/NAME.png`; returns the file's name.
     pub fn write(&self, folder: &Path, name: &str) -> Result<String> {
         let file = folder.join(format!("{name}.png"));
-        std::fs::write(&file, raster::png_at(&self.to_svg(), 1.0)?)?;
+        std::fs::write(&file, raster::small_png_at(&self.to_svg(), 1.0)?)?;
         Ok(file.display().to_string())
     }
 
@@ -317,8 +327,12 @@ fn draw(document: Document, view: &View, eye: &Eye, [low, high]: [DVec2; 2], roo
     }
     for (_, part) in order {
         document = match part {
-            Part::Face { corners, colour, opacity, edge } => {
-                let fill = hex(*colour, eye.light(corners));
+            Part::Face { corners, colour, opacity, edge, is_lit } => {
+                // In steps, so that pictures of many faces stay small.
+                let light = if *is_lit { (SHADES * eye.light(corners)).round() / SHADES } else { 1.0 };
+                let fill = hex(*colour, light);
+                // The edge of a face without edges hides the seams between it and others.
+                let is_seamless = *edge == 0.0 && *opacity == 1.0;
                 let line = if *edge > 0.0 { "#39414f".to_owned() } else { fill.clone() };
                 document.add(
                     Polygon::new()
@@ -326,8 +340,17 @@ fn draw(document: Document, view: &View, eye: &Eye, [low, high]: [DVec2; 2], roo
                         .set("fill", fill)
                         .set("fill-opacity", *opacity)
                         .set("stroke", line)
-                        .set("stroke-width", if *edge > 0.0 { *edge } else { 0.4 })
-                        .set("stroke-opacity", 0.75 * *opacity)
+                        .set(
+                            "stroke-width",
+                            if is_seamless {
+                                0.9
+                            } else if *edge > 0.0 {
+                                *edge
+                            } else {
+                                0.4
+                            },
+                        )
+                        .set("stroke-opacity", if is_seamless { 1.0 } else { 0.75 * *opacity })
                         .set("stroke-linejoin", "round"),
                 )
             }

@@ -37,7 +37,7 @@ fn curves(design: &Design, across: &[DVec3], count: usize) -> Result<Vec<Vec<DVe
 /// The diagonal of the roof that the curves of a family cross.
 fn diagonal(family: usize) -> Vec<DVec3> {
     let shape = roof();
-    let sign = if family == 0 { -1.0 } else { 1.0 };
+    let sign = if family == 0 { 1.0 } else { -1.0 };
     (0..=400).map(|k| f64::from(k) / 400.0).map(|t| shape.point(-1.38 + 2.96 * t, sign * (0.98 - 1.96 * t))).collect()
 }
 
@@ -130,7 +130,7 @@ pub fn figure5(folder: &Path) -> Result<Group> {
         "A roof of 91 by 61 points; eight levels of each function, or six planes.",
     );
     let mesh = roof().mesh(91, 61)?;
-    let family = 1;
+    let family = 0;
     let mut design = Design::new(&mesh, &FieldOptions { family, ..FieldOptions::default() })?;
     let other = Design::new(&mesh, &FieldOptions { family: 1 - family, ..FieldOptions::default() })?;
     let [own, others] =
@@ -201,7 +201,7 @@ pub fn figure6(folder: &Path) -> Result<Group> {
         "Six planes across the roof, each checked against the field that it crosses.",
     );
     let mesh = roof().mesh(91, 61)?;
-    let family = 1;
+    let family = 0;
     let mut design = with_levels(&mesh, family, LevelWeights::ORTHOGONAL, &Levels::Count(2))?;
     let angles = design.set_planar_boundaries(&planes(), &PlanarOptions::default())?;
     for (k, angle) in angles.iter().enumerate() {
@@ -214,17 +214,13 @@ pub fn figure6(folder: &Path) -> Result<Group> {
         let normal = plane.normal.normalize();
         let along = normal.cross(DVec3::Z).normalize();
         let up = along.cross(normal).normalize();
-        let middle = points.iter().sum::<DVec3>() / points.len() as f64;
-        let reach = |axis: DVec3| points.iter().map(|p| (*p - middle).dot(axis).abs()).fold(0.0, f64::max);
-        let (wide, low, high) = (1.08 * reach(along), -1.05 * reach(up) - 0.18, 1.05 * reach(up) + 0.18);
-        let corner = |s: f64, t: f64| middle + wide * (2.0 * s - 1.0) * along + (low + (high - low) * t) * up;
-        // Small pieces, so that what is behind the surface is hidden.
-        let (columns, rows) = (40, 12);
-        for k in 0..columns * rows {
-            let (i, j) = (k / rows, k % rows);
-            let at = |i: usize, j: usize| corner(i as f64 / columns as f64, j as f64 / rows as f64);
-            cut = cut.smooth_face(&[at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)], [0.99, 0.90, 0.74]);
-        }
+        let up = if up.z < 0.0 { -up } else { up };
+        // The part of the plane above the surface, up to a level line.
+        let top = points.iter().map(|p| p.dot(up)).fold(f64::NEG_INFINITY, f64::max) + 0.22;
+        let (first, last) = (points[0], points[points.len() - 1]);
+        let mut corners = points.clone();
+        corners.extend([last, first].map(|end| end + (top - end.dot(up)) * up));
+        cut = cut.face(&corners, [0.99, 0.80, 0.50], 0.45);
         cut = cut.line(&points, RED, 3.0);
     }
     let curves = curves(&design, &diagonal(family), 19)?;

@@ -1,28 +1,29 @@
 //! Figs. 7, 12, 13 and 14: conoidal strips, their spherical image, one against a general strip, planks.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::ControlFlow;
 use std::path::Path;
 
 use anyhow::{Context, Result};
 use glam::DVec3;
-use shapeop::geometry::ruled::Strip;
 use shapeop::geometry::ruled::boundaries::Levels;
-use shapeop::geometry::ruled::design::{Design, FieldOptions};
+use shapeop::geometry::ruled::design::Design;
 use shapeop::geometry::ruled::level_function::LevelWeights;
 use shapeop::geometry::ruled::planks::sheet::sheet;
-use shapeop::geometry::ruled::planks::{PlankOptions, planks};
+use shapeop::geometry::ruled::planks::{Plank, PlankOptions, Planks, planks};
 use shapeop::geometry::ruled::report::{Report, ReportOptions, report};
 use shapeop::geometry::ruled::single::{Single, SingleOptions, single};
 use shapeop::geometry::ruled::spherical_image::Axis;
 use shapeop::geometry::ruled::start::Rulings;
-use shapeop::geometry::ruled::trim::{TrimOptions, trim};
+use shapeop::geometry::ruled::trim::trim;
+use shapeop::mesh::patterns::parametric_surface;
 use shapeop::mesh::reference::ReferenceMesh;
 use shapeop::mesh::{Mesh, SurfacePoint, TriangleMesh, surfaces};
 use shapeop_cli::colours::Rgb;
-use shapeop_cli::scene::{BLUE, INK, ORANGE, Scene, View};
+use shapeop_cli::scene::{BLUE, ORANGE, Scene, View};
 
 use super::drawing::{
-    REFERENCE, SURFACE, in_words, judged, on_surface, outlines, overlay, rulings, strips, surface, told,
+    REFERENCE, SURFACE, TRIM, in_words, judged, on_surface, outlines, overlay, rulings, strips, surface,
 };
 use super::{make, with_levels};
 use crate::group::Group;
@@ -70,19 +71,23 @@ pub fn figure7(folder: &Path) -> Result<Group> {
     let azimuth = middle.x.atan2(-middle.y).to_degrees();
     let mut sphere =
         View::new("(b) the same on the sphere of directions", azimuth, middle.z.asin().to_degrees() + 10.0);
-    sphere = sphere.sphere(DVec3::ZERO, 0.985, [0.95, 0.95, 0.96], 1.0);
+    sphere = surface(sphere, &globe(0.97)?, [0.95, 0.95, 0.96]);
     sphere = surface(sphere, &image, [0.72, 0.80, 0.88]);
+    // Of the circles what is in front.
+    let toward = -sphere.sight();
     for axis in &found {
         let (a, b) = axis.direction.any_orthonormal_pair();
-        let circle: Vec<DVec3> =
-            (0..=180).map(|k| f64::from(2 * k).to_radians()).map(|t| t.cos() * a + t.sin() * b).collect();
-        sphere = sphere.line(&circle, BLUE, 0.9);
+        let at = |k: i32| f64::from(2 * k).to_radians().cos() * a + f64::from(2 * k).to_radians().sin() * b;
+        for k in (0..180).filter(|k| at(*k).dot(toward) > 0.18) {
+            sphere = sphere.line(&[at(k), at(k + 1)], BLUE, 1.0);
+        }
     }
     for boundary in &design.boundaries().boundaries {
         let directions = boundary.on_surface.iter().filter_map(|at| {
             let at = (*at)?;
             let corners = design.mesh().triangles()[at.triangle as usize];
-            Some((0..3).map(|k| at.weights[k] * field[corners[k] as usize]).sum::<DVec3>().normalize())
+            // A little farther out, to be over the circles.
+            Some(1.02 * (0..3).map(|k| at.weights[k] * field[corners[k] as usize]).sum::<DVec3>().normalize())
         });
         sphere = sphere.line(&directions.collect::<Vec<_>>(), ORANGE, 3.0);
     }
@@ -102,6 +107,11 @@ pub fn figure7(folder: &Path) -> Result<Group> {
     Ok(group)
 }
 
+/// A sphere about the origin.
+fn globe(radius: f64) -> Result<Mesh> {
+    Ok(parametric_surface(97, 49, [0.0, TAU], [-FRAC_PI_2, FRAC_PI_2], |u, v| surfaces::sphere(radius)(u, v).point)?)
+}
+
 const GREEN: Rgb = [0.60, 0.80, 0.55];
 const AMBER: Rgb = [0.97, 0.72, 0.38];
 
@@ -115,8 +125,8 @@ pub fn figure12(folder: &Path) -> Result<Group> {
     let triangles = TriangleMesh::new(&mesh)?;
     let reference = ReferenceMesh::new(&triangles);
     let curve =
-        |s: f64| -> Vec<DVec3> { (0..=800).map(|i| shape.point(2.3 * f64::from(i) / 800.0 - 0.15, s)).collect() };
-    let (first, second) = (curve(0.97), curve(2.03));
+        |s: f64| -> Vec<DVec3> { (0..=800).map(|i| shape.point(2.7 * f64::from(i) / 800.0 - 0.35, s)).collect() };
+    let (first, second) = (curve(0.9), curve(2.1));
     let cover = shape.mesh(61, 21)?.points;
     let find = |is_conoidal| -> Result<Single> {
         let options =
@@ -156,16 +166,19 @@ pub fn figure12(folder: &Path) -> Result<Group> {
         of_conoidal.strips_to_reference.rms / of_general.strips_to_reference.rms,
         10.0,
     );
-    let view = |title: &str| View::new(title, 62.0, 24.0);
-    let mut views = vec![surface(view("reference surface"), &mesh, REFERENCE).caption("no ruled surface".to_owned())];
-    let cut = |found: &Single| trim(std::slice::from_ref(found.strip()), &reference, &TrimOptions::default());
+    let view = |title: &str| View::new(title, -16.0, 48.0);
+    let mut views = vec![
+        surface(view("reference surface"), &mesh, REFERENCE)
+            .caption("tilted and bent rulings: no ruled surface".to_owned()),
+    ];
+    let cut = |found: &Single| trim(std::slice::from_ref(found.strip()), &reference, &TRIM);
     let mut overlaid = Vec::new();
     for (name, colour, found, of) in [
         ("one conoidal strip", GREEN, &conoidal, &of_conoidal),
         ("one general ruled strip", AMBER, &general, &of_general),
     ] {
         let (strip, trimmed) = (std::slice::from_ref(found.strip()), cut(found)?);
-        let faces = super::drawing::faces(view(name), strip, &trimmed, [8, 12], &|_, _, _| colour);
+        let faces = super::drawing::faces(view(name), strip, &trimmed, diagonal / 60.0, &|_| colour);
         let tilt = found.tilt_rad[1].to_degrees();
         let words = if tilt < 1e-6 {
             "all rulings parallel to one plane".to_owned()
@@ -212,75 +225,76 @@ pub fn figure12(folder: &Path) -> Result<Group> {
     Ok(group)
 }
 
+/// The thickness of planks.
+const THICKNESS: f64 = 0.08;
+
 const WOODS: [Rgb; 3] = [[0.90, 0.76, 0.56], [0.83, 0.66, 0.45], [0.95, 0.84, 0.67]];
+
+/// The faces of planks.
+fn stacked(mut view: View, planks: &[Plank], tone: usize) -> View {
+    for (k, plank) in planks.iter().enumerate() {
+        let [low, high] = plank.corners();
+        let colour = WOODS[(k + tone) % 3];
+        view = view.face(&low, colour, 1.0).face(&high, colour, 1.0);
+        for side in 0..4 {
+            let next = (side + 1) % 4;
+            view = view.face(&[low[side], low[next], high[next], high[side]], colour, 1.0);
+        }
+    }
+    view
+}
 
 pub fn figures13_14(folder: &Path) -> Result<Group> {
     let mut group = Group::new(
         "Figs. 13 and 14: planks",
         "Conoidal strips of part of a catenoid, each built from planks of one thickness, and the sheet they are cut from.",
     );
-    let mesh = shell().mesh(101, 69)?;
-    let mut design = with_levels(&mesh, 1, LevelWeights::CONOIDAL, &Levels::Count(5))?;
+    let shape = Shape::new("catenoid", [[0.0, 1.3], [0.45, 1.3]], surfaces::catenoid());
+    let mesh = shape.mesh(91, 61)?;
+    let mut design = with_levels(&mesh, 1, LevelWeights::CONOIDAL, &Levels::Count(4))?;
     let made = make(&mut design, 12, |design| Ok(design.conoidal_conditions()?.0))?;
     judged(&mut group, &design, &made.report);
     let diagonal = design.mesh().diagonal();
     let turned = |title: &str| View::new(title, -52.0, 30.0);
     let shown = strips(turned("conoidal strips, trimmed"), design.strips(), &made.trimmed, 2);
-    let mut built = turned("the same of planks");
-    let (mut count, mut deviation, mut sheets) = (0, 0.0_f64, Vec::new());
+    let mut built = turned("planks parallel to the rulings of each strip");
+    let mut all = Vec::new();
     for (i, strip) in design.strips().iter().enumerate() {
-        // Only where something of the strip is left.
-        let Some(strip) = left(strip, &made.trimmed[i])? else { continue };
-        let options = PlankOptions { depth: 0.03, ..PlankOptions::new(0.06) };
-        let found = match planks(&strip, &options) {
-            Ok(found) => found,
-            Err(error) => {
-                eprintln!("strip {i}: {error}");
-                continue;
+        match planks(strip, &PlankOptions { depth: 0.02, ..PlankOptions::new(THICKNESS) }) {
+            Ok(found) => {
+                built = stacked(built, &found.planks, i);
+                all.push((i, found));
             }
-        };
-        count += found.planks.len();
-        deviation = deviation.max(found.deviation_deg);
-        for (k, plank) in found.planks.iter().enumerate() {
-            let [low, high] = plank.corners();
-            let colour = WOODS[(k + i) % 3];
-            built = built.face(&low, colour, 1.0).face(&high, colour, 1.0);
-            for side in 0..4 {
-                let next = (side + 1) % 4;
-                built = built.face(&[low[side], low[next], high[next], high[side]], colour, 1.0);
-            }
+            Err(error) => eprintln!("strip {i}: {error}"),
         }
-        sheets.push((i, found));
     }
-    group.plain("planks", count as f64);
+    group.at_least("strips that are built of planks, over all", all.len() as f64 / design.strips().len() as f64, 1.0);
+    group.plain("planks", all.iter().map(|(_, found)| found.planks.len()).sum::<usize>() as f64);
+    let deviation = all.iter().map(|(_, found)| found.deviation_deg).fold(0.0, f64::max);
     group.at_most("rulings off planks, degrees", deviation, 1e-4);
-    let (number, largest) = sheets.iter().max_by_key(|(_, planks)| planks.planks.len()).context("no planks")?;
+    let count = all.iter().map(|(_, found)| found.planks.len()).sum::<usize>();
+    let (number, largest) = all.iter().max_by_key(|(_, found)| found.planks.len()).context("no planks")?;
     group.plain("strip on the sheet: planks", largest.planks.len() as f64);
     group.plain("strip on the sheet: part that is cut off", largest.offcut);
-    let drawing =
-        sheet(largest, &format!("strip {number}"), 1000.0)?.replace("stroke-width=\"0.1\"", "stroke-width=\"3\"");
-    let words = format!(
-        "{} planks, {:.0} % of the boards cut off;\nred: cuts, blue: rulings in the lower and upper face",
-        largest.planks.len(),
-        100.0 * largest.offcut
-    );
+    let axis = DVec3::from_array(largest.axis);
+    let aside = stacked(View::new("one strip, seen along its rulings", 12.0, 8.0), &largest.planks, *number);
+    let first = Planks { planks: largest.planks[..6.min(largest.planks.len())].to_vec(), ..largest.clone() };
+    let drawing = sheet(&first, &format!("strip {number}, the first"), 1000.0)?;
+    let drawing = drawing.replace("stroke-width=\"0.1\"", "stroke-width=\"2.5\"");
     let scene = Scene {
         title: "Conoidal strips are built from planks of constant thickness".to_owned(),
         subtitle: "Rulings of a strip are parallel to a plane: planks parallel to it, with straight cuts, are stacked along its axis".to_owned(),
-        columns: 3,
+        columns: 2,
         views: vec![
             shown.caption(in_words(&made.report, diagonal)),
-            built.caption(format!("{count} planks of thickness 0.06")),
-            View::of_sheet(&format!("sheet of strip {number}"), &drawing)?.caption(words),
+            built.caption(format!("{count} planks of thickness {THICKNESS}, boards a little wider than the rulings ask for")),
+            aside.caption(format!("{} planks, axis ({:.2}, {:.2}, {:.2})", largest.planks.len(), axis.x, axis.y, axis.z)),
+            View::of_sheet("the sheet they are cut from: its first planks", &drawing)?.caption(format!(
+                "red: cuts; blue: rulings in the lower and (dashed) upper face; of all boards {:.0} % are cut off",
+                100.0 * largest.offcut
+            )),
         ],
     };
     group.picture = Some(scene.write(folder, "planks")?);
-    let _ = (INK, told as fn(&mut Group, &Report, f64), FieldOptions::default());
     Ok(group)
-}
-
-/// The part of a strip between the first and the last ruling of which something is left.
-fn left(strip: &Strip, trimmed: &shapeop::geometry::ruled::trim::Trimmed) -> Result<Option<Strip>> {
-    let _ = trimmed;
-    Ok(Some(strip.clone()))
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use shapeop::geometry::ruled::design::Design;
 use shapeop::geometry::ruled::report::Report;
-use shapeop::geometry::ruled::trim::Trimmed;
+use shapeop::geometry::ruled::trim::{TrimOptions, Trimmed};
 use shapeop::geometry::ruled::{Boundary, Strip};
 use shapeop::mesh::{Mesh, ReferenceSurface};
 use shapeop_cli::colours::Rgb;
@@ -21,47 +21,88 @@ const RIM: Rgb = [0.30, 0.33, 0.40];
 /// Rulings are drawn in so many pieces, so that each is as near as it is.
 const PIECES: usize = 10;
 
-/// Cells of what is left of a strip: so many columns in each span, so many rows.
-pub fn cells(strip: &Strip, trimmed: &Trimmed, columns_per_span: usize, rows: usize) -> Vec<[[f64; 2]; 4]> {
-    let columns = columns_per_span * strip.basis().spans();
-    let u = |k: usize| strip.length_u() * k as f64 / columns as f64;
-    let parts: Vec<Vec<[f64; 2]>> = (0..=columns).map(|k| trimmed.ruling_parts(u(k))).collect();
+/// Triangles of parameters of what is left of a strip, with no edge longer than this in space.
+fn pieces(strip: &Strip, trimmed: &Trimmed, longest: f64) -> Vec<[[f64; 2]; 3]> {
+    let at = |[u, v]: [f64; 2]| strip.at(u, v).point;
+    let mut waiting: Vec<[[f64; 2]; 3]> =
+        trimmed.triangles().iter().map(|corners| corners.map(|i| trimmed.parameters()[i as usize])).collect();
     let mut found = Vec::new();
-    for k in 0..columns {
-        // Where a piece begins or ends within a column it is left out: a sliver.
-        let both = parts[k].iter().zip(&parts[k + 1]).filter(|_| parts[k].len() == parts[k + 1].len());
-        for (before, after) in both {
-            let v = |part: &[f64; 2], row: usize| part[0] + (part[1] - part[0]) * row as f64 / rows as f64;
-            for row in 0..rows {
-                let [low, high] = [row, row + 1];
-                found.push([
-                    [u(k), v(before, low)],
-                    [u(k + 1), v(after, low)],
-                    [u(k + 1), v(after, high)],
-                    [u(k), v(before, high)],
-                ]);
-            }
+    while let Some(triangle) = waiting.pop() {
+        let length = |k: &usize| at(triangle[*k]).distance(at(triangle[(k + 1) % 3]));
+        let k = (0..3).max_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or(0);
+        if length(&k) <= longest {
+            found.push(triangle);
+            continue;
         }
+        let [a, b, c] = [0, 1, 2].map(|i| triangle[(k + i) % 3]);
+        let middle = [0, 1].map(|i| 0.5 * (a[i] + b[i]));
+        waiting.extend([[a, middle, c], [middle, b, c]]);
     }
     found
 }
 
-/// Trimmed strips as faces, with a colour for each cell by its strip and the parameters of its middle.
+/// Trimmed strips as faces no longer than this, each strip in its colour.
 pub fn faces(
     mut view: View,
     strips: &[Strip],
     trimmed: &[Trimmed],
-    [columns_per_span, rows]: [usize; 2],
-    colour: &dyn Fn(usize, f64, f64) -> Rgb,
+    longest: f64,
+    colour: &dyn Fn(usize) -> Rgb,
 ) -> View {
     for (i, (strip, trimmed)) in strips.iter().zip(trimmed).enumerate() {
-        for cell in cells(strip, trimmed, columns_per_span, rows) {
-            let [u, v] = [0, 1].map(|k| cell.iter().map(|at| at[k]).sum::<f64>() / 4.0);
-            let corners = cell.map(|[u, v]| strip.at(u, v).point);
-            view = view.smooth_face(&corners, colour(i, u, v));
+        for piece in pieces(strip, trimmed, longest) {
+            view = view.smooth_face(&piece.map(|[u, v]| strip.at(u, v).point), colour(i));
         }
     }
     view
+}
+
+/// Trimmed strips in one colour where a function of strip and parameters is below 0, in the other where it is not, shaded or flat.
+pub fn two_tones(
+    mut view: View,
+    strips: &[Strip],
+    trimmed: &[Trimmed],
+    longest: f64,
+    value: &dyn Fn(usize, f64, f64) -> f64,
+    colours: [Rgb; 2],
+    is_lit: bool,
+) -> View {
+    for (i, (strip, trimmed)) in strips.iter().zip(trimmed).enumerate() {
+        for piece in pieces(strip, trimmed, longest) {
+            let values = piece.map(|[u, v]| value(i, u, v));
+            for (sign, colour) in [-1.0, 1.0].into_iter().zip(colours) {
+                let mut corners = Vec::new();
+                for k in 0..3 {
+                    let next = (k + 1) % 3;
+                    let [from, to] = [k, next].map(|k| sign * values[k]);
+                    if from >= 0.0 {
+                        corners.push(piece[k]);
+                    }
+                    if (from >= 0.0) != (to >= 0.0) {
+                        let part = from / (from - to);
+                        corners.push([0, 1].map(|c| piece[k][c] + part * (piece[next][c] - piece[k][c])));
+                    }
+                }
+                if corners.len() > 2 {
+                    let points: Vec<DVec3> = corners.iter().map(|&[u, v]| strip.at(u, v).point).collect();
+                    view = if is_lit { view.smooth_face(&points, colour) } else { view.flat_face(&points, colour) };
+                }
+            }
+        }
+    }
+    view
+}
+
+/// How strips are trimmed to be drawn: as finely as is seen.
+pub const TRIM: TrimOptions = TrimOptions { tolerance: 2e-4, columns_per_span: 6 };
+
+/// How long faces are at most, over the size of what is drawn.
+const FINE: f64 = 1.0 / 60.0;
+
+fn size(strips: &[Strip]) -> f64 {
+    let points = || strips.iter().flat_map(|strip| strip.control(0).iter().chain(strip.control(1)));
+    let low = points().fold(DVec3::INFINITY, |low, p| low.min(*p));
+    low.distance(points().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p)))
 }
 
 /// Boundaries of trimmed strips in bold, the rim of the surface thinner.
@@ -100,7 +141,7 @@ pub fn rulings(mut view: View, strips: &[Strip], trimmed: &[Trimmed], per_span: 
 
 /// Trimmed strips in turn in two colours, with rulings and bold boundaries.
 pub fn strips(view: View, strips: &[Strip], trimmed: &[Trimmed], rulings_per_span: usize) -> View {
-    let view = faces(view, strips, trimmed, [8, 8], &|i, _, _| STRIPS[i % 2]);
+    let view = faces(view, strips, trimmed, FINE * size(strips), &|i| STRIPS[i % 2]);
     outlines(rulings(view, strips, trimmed, rulings_per_span), strips, trimmed)
 }
 
@@ -126,16 +167,16 @@ pub fn whole_strips(mut view: View, strips: &[Strip], rulings_per_span: usize) -
     view
 }
 
-/// Strips and the surface laid over each other: white where the strip is in front, blue where the surface is.
+/// Strips and a surface laid over each other: in this colour where the strip is in front, blue where the surface is.
 pub fn overlay(view: View, strips: &[Strip], trimmed: &[Trimmed], surface: &dyn ReferenceSurface, colour: Rgb) -> View {
-    let sight = view.sight();
-    let shown = |i: usize, u: f64, v: f64| {
+    let sight = faces(view.clone(), strips, trimmed, FINE * size(strips), &|_| colour).sight();
+    let front = |i: usize, u: f64, v: f64| {
         let point = strips[i].at(u, v).point;
         let foot = surface.nearest(point);
         let towards = if foot.normal.dot(sight) < 0.0 { foot.normal } else { -foot.normal };
-        if (point - foot.point).dot(towards) > 0.0 { colour } else { REFERENCE }
+        (point - foot.point).dot(towards)
     };
-    faces(view, strips, trimmed, [12, 16], &shown)
+    two_tones(view, strips, trimmed, 0.5 * FINE * size(strips), &front, [REFERENCE, colour], true)
 }
 
 /// A surface without edges.

@@ -18,11 +18,12 @@ use shapeop::geometry::ruled::level_function::{LevelOptions, LevelWeights};
 use shapeop::geometry::ruled::optimise::Options;
 use shapeop::geometry::ruled::report::{Report, ReportOptions};
 use shapeop::geometry::ruled::start::StartOptions;
-use shapeop::geometry::ruled::trim::{TrimOptions, Trimmed, trim};
+use shapeop::geometry::ruled::trim::{Trimmed, trim};
 use shapeop::mesh::Mesh;
 use shapeop::mesh::reference::ReferenceMesh;
 
 use crate::group::Group;
+use drawing::TRIM;
 
 type Figure = fn(&Path) -> Result<Group>;
 
@@ -83,6 +84,6 @@ fn make(
 
 fn judge(design: &Design) -> Result<Made> {
     let report = design.report(None, &ReportOptions::default())?;
-    let trimmed = trim(design.strips(), &ReferenceMesh::new(design.mesh()), &TrimOptions::default())?;
+    let trimmed = trim(design.strips(), &ReferenceMesh::new(design.mesh()), &TRIM)?;
     Ok(Made { report, trimmed, iterations: 0 })
 }

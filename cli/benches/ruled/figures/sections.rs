@@ -7,14 +7,17 @@ use anyhow::Result;
 use glam::DVec3;
 use shapeop::geometry::ruled::asymptotic::{AsymptoticDirections, Options, PointStatus};
 use shapeop::geometry::ruled::tangent_section::TangentSection;
+use shapeop::mesh::TriangleMesh;
 use shapeop::mesh::patterns::height_field;
-use shapeop::mesh::{Mesh, TriangleMesh};
 use shapeop_cli::scene::{BLUE, INK, ORANGE, RED, Scene, View};
 
 use crate::group::Group;
 
 /// Columns and rows of the mesh.
 const SIDE: usize = 97;
+
+/// Points are shown where Gauss's curvature is at least this part of its largest.
+const CURVED: f64 = 0.15;
 
 /// Where the surface is negatively curved, and where it is not.
 const NEGATIVE: [f64; 3] = [0.80, 0.88, 0.95];
@@ -33,48 +36,50 @@ pub fn figure4(folder: &Path) -> Result<Group> {
     let colour = |face: usize| {
         if mesh.faces[face].iter().filter(|i| is_negative(**i as usize)).count() >= 2 { NEGATIVE } else { POSITIVE }
     };
+    let curvature = |i: usize| found.curvatures()[i].gaussian();
+    let most = (0..mesh.points.len()).map(|i| curvature(i).abs()).fold(0.0, f64::max);
     let mut whole = View::new("sections at many points", 24.0, 42.0).mesh(&mesh, 1.0, 0.0, &colour);
-    let (mut degrees, mut crossed, mut bare) = (Vec::new(), 0, 0);
-    for (i, j) in (7..SIDE).step_by(14).flat_map(|i| (7..SIDE).step_by(14).map(move |j| (i, j))) {
+    let (mut degrees, mut negative, mut positive, mut crossed, mut bare) = (Vec::new(), 0, 0, 0, 0);
+    for (i, j) in (6..SIDE).step_by(12).flat_map(|i| (6..SIDE).step_by(12).map(move |j| (i, j))) {
         let point = i * SIDE + j;
+        // Where the surface is nearly flat one way there is nothing to be seen.
+        if curvature(point).abs() < CURVED * most {
+            continue;
+        }
         let section = TangentSection::new(&triangles, point, found.curvatures()[point].normal, 5)?;
         let at = mesh.points[point];
         if is_negative(point) {
-            crossed += usize::from(section.branches.len() == 4);
+            (negative, crossed) = (negative + 1, crossed + usize::from(section.branches.len() == 4));
             for direction in section.directions() {
                 let sine = |family: usize| found.family(family).map(|a| a[point].cross(direction).length());
                 degrees.push(sine(0)?.min(sine(1)?).asin().to_degrees());
             }
-            whole = section.branches.iter().fold(whole, |view, branch| view.line(branch, ORANGE, 2.6));
+            whole = section.branches.iter().fold(whole, |view, branch| view.line(branch, ORANGE, 2.8));
             whole = whole.dots(&[at], INK, 3.0);
         } else {
-            bare += usize::from(section.branches.is_empty());
+            (positive, bare) = (positive + 1, bare + usize::from(section.branches.is_empty()));
             whole = whole.dots(&[at], RED, 3.6);
         }
     }
-    let negative = degrees.len() / 4;
-    let total = 49;
-    group.between("points where K < 0 with four branches, all of them", crossed as f64, [negative as f64; 2]);
-    group.between("points where K ≥ 0 without a branch, all of them", bare as f64, [(total - crossed) as f64; 2]);
+    group.between("points on saddles with four branches, all of them", crossed as f64, [negative as f64; 2]);
+    group.between("points on domes and bowls without a branch, all of them", bare as f64, [positive as f64; 2]);
     let mean = degrees.iter().sum::<f64>() / degrees.len() as f64;
     group.at_most("branches off asymptotic directions, mean, degrees", mean, 5.0);
     group.plain("branches off asymptotic directions, largest, degrees", degrees.iter().copied().fold(0.0, f64::max));
 
     // Near the middle of a saddle, off its symmetry.
-    let (row, column) = (59, 57);
-    let point = row * SIDE + column;
+    let point = 62 * SIDE + 58;
     let at = mesh.points[point];
     let normal = found.curvatures()[point].normal;
-    let reach = 1.25;
-    let near = |face: &&Vec<u32>| face.iter().all(|i| mesh.points[*i as usize].distance(at) < 1.3 * reach);
-    let patch = Mesh { points: mesh.points.clone(), faces: mesh.faces.iter().filter(near).cloned().collect() };
-    let section = TangentSection::new(&triangles, point, normal, 20)?;
-    let (e1, e2) = {
-        let [a, b] = [found.family(0)?[point], found.family(1)?[point]];
-        let b = if a.dot(b) < 0.0 { -b } else { b };
-        ((a + b).normalize(), normal.cross((a + b).normalize()))
-    };
-    let mut close = View::new("a point, its tangent plane and where the two meet", 24.0, 40.0);
+    let reach = 1.15;
+    let shown = 1.45 * reach;
+    let patch = height_field(61, 61, [at.x - shown, at.x + shown], [at.y - shown, at.y + shown], |x, y| {
+        0.9 * x.sin() * y.sin()
+    })?;
+    let section = TangentSection::new(&triangles, point, normal, 24)?;
+    let e1 = DVec3::X.reject_from_normalized(normal).normalize();
+    let e2 = normal.cross(e1);
+    let mut close = View::new("a point, its tangent plane and where the two meet", 24.0, 42.0);
     close = close.mesh(&patch, 1.0, 0.0, &|_| NEGATIVE);
     // Many small pieces of the plane, that each is in front of the surface or behind it.
     let parts = 48;
@@ -87,14 +92,20 @@ pub fn figure4(folder: &Path) -> Result<Group> {
         let corners = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
         close = close.smooth_face(&corners, [0.99, 0.83, 0.60]);
     }
-    close = section.branches.iter().fold(close, |view, branch| {
-        let inside =
-            branch.iter().copied().take_while(|p| (*p - at).dot(e1).abs().max((*p - at).dot(e2).abs()) < reach);
-        view.line(&inside.collect::<Vec<_>>(), ORANGE, 3.4)
-    });
     for family in 0..2 {
-        let a = 0.75 * found.family(family)?[point];
-        close = close.line(&dashes(at - a, at + a), BLUE, 2.2);
+        let a = 1.5 * reach * found.family(family)?[point];
+        close = close.line(&in_pieces(at - a, at + a), BLUE, 1.5);
+    }
+    close = section.branches.iter().fold(close, |view, branch| {
+        let is_within = |p: &DVec3| (*p - at).dot(e1).abs().max((*p - at).dot(e2).abs()) < reach;
+        // A little above, to be over the lines of the directions.
+        let points: Vec<DVec3> = branch.iter().copied().take_while(is_within).map(|p| p + 0.05 * normal).collect();
+        view.line(&points, ORANGE, 3.6)
+    });
+    let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
+    let square: Vec<DVec3> = square.iter().map(|[s, t]| at + reach * (*s * e1 + *t * e2)).collect();
+    for side in square.windows(2) {
+        close = close.line(&in_pieces(side[0], side[1]), [0.70, 0.50, 0.25], 1.0);
     }
     close = close.dots(&[at], INK, 4.0);
     let words = format!(
@@ -115,7 +126,7 @@ pub fn figure4(folder: &Path) -> Result<Group> {
     Ok(group)
 }
 
-/// The pieces of a dashed line, one point after the other; for [`View::line`] in pairs.
-fn dashes(from: DVec3, to: DVec3) -> Vec<DVec3> {
+/// A straight line in pieces, each of which is as near as it is.
+fn in_pieces(from: DVec3, to: DVec3) -> Vec<DVec3> {
     (0..=24).map(|k| from.lerp(to, f64::from(k) / 24.0)).collect()
 }

@@ -86,7 +86,7 @@ pub fn figure9(folder: &Path) -> Result<Group> {
         "Fig. 9: geodesic boundaries on a minimal surface",
         "Part of Enneper's surface; boundaries that are shortest paths can be bent from straight boards.",
     );
-    let shape = Shape::new("Enneper's surface", [[-0.95, 0.95], [-0.95, 0.95]], surfaces::enneper());
+    let shape = Shape::new("Enneper's surface", [[-0.72, 0.72], [-0.72, 0.72]], surfaces::enneper());
     let mesh = shape.mesh(81, 81)?;
     let mut plain = with_levels(&mesh, 0, LevelWeights::ORTHOGONAL, &Levels::Count(9))?;
     let straight = LevelWeights { orthogonal: 0.01, ..LevelWeights::GEODESIC };
@@ -133,7 +133,7 @@ pub fn figure10(folder: &Path) -> Result<Group> {
         "Strips between the sections of Fig. 6, optimised with each boundary in its plane.",
     );
     let mesh = roof().mesh(91, 61)?;
-    let mut design = Design::new(&mesh, &FieldOptions { family: 1, ..FieldOptions::default() })?;
+    let mut design = Design::new(&mesh, &FieldOptions { family: 0, ..FieldOptions::default() })?;
     design.set_planar_boundaries(&planes(), &PlanarOptions::default())?;
     let made = make(&mut design, 14, |design| Ok(design.planar_conditions()))?;
     judged(&mut group, &design, &made.report);
@@ -173,9 +173,9 @@ pub fn figure10(folder: &Path) -> Result<Group> {
     Ok(group)
 }
 
-/// A saddle with ripples of a length of about 1.5: z = a x²/2 − b cos(4.2 x) − (c y²/2 − d cos(4.2 y)), steeper where ripples add up.
+/// A saddle with ripples: the second derivatives of z by x and −y go from 0.08 to 1.92 and back over a length of 1.3.
 fn rippled() -> Shape {
-    let (k, a, b) = (4.2_f64, 0.55, 0.9 * 0.55 / (4.2 * 4.2));
+    let (k, a, b) = (5.0_f64, 1.0, 0.92 / 25.0);
     let one = move |t: f64| {
         [0.5 * a * t * t - b * (k * t).cos(), a * t + b * k * (k * t).sin(), a + b * k * k * (k * t).cos()]
     };
@@ -220,10 +220,10 @@ pub fn figure11(folder: &Path) -> Result<Group> {
         group.at_least(&format!("{name} strips: coverage"), report.coverage, 0.995);
         let is_wide = |i: usize| report.too_wide.contains(&i);
         let view = View::new(&format!("{} strips of width {width}", design.strips().len()), -30.0, 42.0);
-        let colour = |i: usize, _: f64, _: f64| {
+        let colour = |i: usize| {
             if is_wide(i) { [[0.98, 0.80, 0.74], [0.95, 0.70, 0.64]][i % 2] } else { STRIPS[i % 2] }
         };
-        let view = faces(view, design.strips(), &made.trimmed, [8, 8], &colour);
+        let view = faces(view, design.strips(), &made.trimmed, diagonal / 80.0, &colour);
         let mut view = outlines(rulings(view, design.strips(), &made.trimmed, 2), design.strips(), &made.trimmed);
         for (i, strip) in design.strips().iter().enumerate().filter(|(i, _)| width > 0.3 && is_wide(*i)) {
             // In the middle of what is left of the strip.
@@ -256,7 +256,7 @@ pub fn figure11(folder: &Path) -> Result<Group> {
     group.at_least("deviation of wide strips over that of narrow ones", told[0].1 / told[1].1, 4.0);
     let scene = Scene {
         title: "Strips that are wide compared with the features of the surface".to_owned(),
-        subtitle: "A saddle with ripples: wide strips cannot follow it and lose their constant width; a quarter of the width does".to_owned(),
+        subtitle: "A saddle with ripples: where strips are as wide as these are large they cannot follow it, and the report warns; narrower ones do".to_owned(),
         columns: 2,
         views,
     };
