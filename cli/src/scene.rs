@@ -13,7 +13,7 @@ use shapeop::geometry::circle::Circle;
 use shapeop::mesh::{Grid, Mesh};
 use svg::Document;
 use svg::node::Blob;
-use svg::node::element::{Group, Polygon, Polyline, Rectangle, Text};
+use svg::node::element::{Group, Path as SvgPath, Polygon, Polyline, Rectangle, Text};
 
 pub const WHITE: Rgb = [0.93, 0.945, 0.96];
 pub const BLUE_FACE: Rgb = [0.70, 0.83, 0.97];
@@ -39,10 +39,33 @@ const LIFT: f64 = 0.03;
 /// A part of a drawing.
 #[derive(Clone, Debug)]
 enum Part {
-    Face { corners: Vec<DVec3>, colour: Rgb, opacity: f64, edge: f64, is_lit: bool },
-    Line { ends: [DVec3; 2], colour: Rgb, width: f64 },
-    Dot { at: DVec3, colour: Rgb, radius: f64 },
-    Label { at: DVec3, words: String, colour: Rgb },
+    Face {
+        corners: Vec<DVec3>,
+        colour: Rgb,
+        opacity: f64,
+        edge: f64,
+        is_lit: bool,
+    },
+    /// Polygons that are drawn as one, without seams.
+    Patch {
+        polygons: Vec<Vec<DVec3>>,
+        colour: Rgb,
+    },
+    Line {
+        ends: [DVec3; 2],
+        colour: Rgb,
+        width: f64,
+    },
+    Dot {
+        at: DVec3,
+        colour: Rgb,
+        radius: f64,
+    },
+    Label {
+        at: DVec3,
+        words: String,
+        colour: Rgb,
+    },
 }
 
 /// One view.
@@ -108,9 +131,16 @@ impl View {
         self
     }
 
-    /// As [`View::smooth_face`], in one colour wherever the light comes from.
-    pub fn flat_face(mut self, corners: &[DVec3], colour: Rgb) -> Self {
-        self.parts.push(Part::Face { corners: corners.to_vec(), colour, opacity: 1.0, edge: 0.0, is_lit: false });
+    /// A face that lets through what is behind it, without edges and in one colour wherever the light comes from.
+    pub fn glass(mut self, corners: &[DVec3], colour: Rgb, opacity: f64) -> Self {
+        self.parts.push(Part::Face { corners: corners.to_vec(), colour, opacity, edge: 0.0, is_lit: false });
+        self
+    }
+
+    /// Polygons as one, without seams, over all faces: for a pattern on a surface of which nothing hides another part. They run
+    /// around the same way.
+    pub fn patch(mut self, polygons: Vec<Vec<DVec3>>, colour: Rgb) -> Self {
+        self.parts.push(Part::Patch { polygons, colour });
         self
     }
 
@@ -234,6 +264,7 @@ impl Part {
     fn points(&self) -> Vec<DVec3> {
         match self {
             Self::Face { corners, .. } => corners.clone(),
+            Self::Patch { polygons, .. } => polygons.concat(),
             Self::Line { ends, .. } => ends.to_vec(),
             Self::Dot { at, .. } | Self::Label { at, .. } => vec![*at],
         }
@@ -312,6 +343,8 @@ fn draw(document: Document, view: &View, eye: &Eye, [low, high]: [DVec2; 2], roo
     let nearness = |part: &Part| {
         let lift = match part {
             Part::Face { .. } => 0.0,
+            // Over the faces that it is part of.
+            Part::Patch { .. } => 1.0 + LIFT,
             Part::Line { .. } | Part::Dot { .. } => LIFT,
             Part::Label { .. } => f64::INFINITY,
         };
@@ -334,25 +367,27 @@ fn draw(document: Document, view: &View, eye: &Eye, [low, high]: [DVec2; 2], roo
                 // The edge of a face without edges hides the seams between it and others.
                 let is_seamless = *edge == 0.0 && *opacity == 1.0;
                 let line = if *edge > 0.0 { "#39414f".to_owned() } else { fill.clone() };
+                let width = match (*edge > 0.0, is_seamless, is_lit) {
+                    (true, ..) => *edge,
+                    (_, true, _) => 0.9,
+                    (_, _, true) => 0.4,
+                    _ => 0.0,
+                };
                 document.add(
                     Polygon::new()
                         .set("points", listed(corners))
                         .set("fill", fill)
                         .set("fill-opacity", *opacity)
                         .set("stroke", line)
-                        .set(
-                            "stroke-width",
-                            if is_seamless {
-                                0.9
-                            } else if *edge > 0.0 {
-                                *edge
-                            } else {
-                                0.4
-                            },
-                        )
+                        .set("stroke-width", width)
                         .set("stroke-opacity", if is_seamless { 1.0 } else { 0.75 * *opacity })
                         .set("stroke-linejoin", "round"),
                 )
+            }
+            Part::Patch { polygons, colour } => {
+                let outline = |polygon: &Vec<DVec3>| format!("M{}Z", listed(polygon));
+                let data: String = polygons.iter().map(outline).collect();
+                document.add(SvgPath::new().set("d", data).set("fill", hex(*colour, 1.0)))
             }
             Part::Line { ends, colour, width } => document.add(
                 Polyline::new()

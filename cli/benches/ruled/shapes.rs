@@ -92,10 +92,10 @@ pub fn bent_conoid(tilt: f64, lift: f64) -> Shape {
     })
 }
 
-/// A roof: z = 0.3 (x² − y²) + 0.06 (x³ − 3xy²), steeper at one end; its asymptotic curves run along both diagonals.
+/// A roof: z = 0.3 (x² − y²) + 0.045 (x³ − 3xy²), steeper at one end; its asymptotic curves run along both diagonals.
 pub fn roof() -> Shape {
     let height = |x: f64, y: f64| {
-        let (a, b) = (0.3, 0.06);
+        let (a, b) = (0.3, 0.045);
         [
             a * (x * x - y * y) + b * (x.powi(3) - 3.0 * x * y * y),
             2.0 * a * x + 3.0 * b * (x * x - y * y),
@@ -105,7 +105,7 @@ pub fn roof() -> Shape {
             -2.0 * a - 6.0 * b * x,
         ]
     };
-    Shape::new("roof", [[-1.4, 1.6], [-1.0, 1.0]], surfaces::graph(height))
+    Shape::new("roof", [[-1.2, 1.5], [-1.0, 1.0]], surfaces::graph(height))
 }
 
 /// A mesh with all its quads split along one diagonal: where both are as long but for round-off, the shorter one is any.

@@ -19,6 +19,9 @@ use super::{set_levels, with_levels};
 use crate::group::Group;
 use crate::shapes::roof;
 
+/// The edges of planes.
+const EDGE: [f64; 3] = [0.72, 0.50, 0.22];
+
 const THIN: [f64; 3] = [0.45, 0.60, 0.80];
 
 /// Asymptotic curves from points evenly spread over a curve across them, and from its ends on along the rim.
@@ -38,7 +41,7 @@ fn curves(design: &Design, across: &[DVec3], count: usize) -> Result<Vec<Vec<DVe
 fn diagonal(family: usize) -> Vec<DVec3> {
     let shape = roof();
     let sign = if family == 0 { 1.0 } else { -1.0 };
-    (0..=400).map(|k| f64::from(k) / 400.0).map(|t| shape.point(-1.38 + 2.96 * t, sign * (0.98 - 1.96 * t))).collect()
+    (0..=400).map(|k| f64::from(k) / 400.0).map(|t| shape.point(-1.18 + 2.66 * t, sign * (0.98 - 1.96 * t))).collect()
 }
 
 /// Geodesic curvature of boundaries over the surface's size: its root mean square, from chords of two mean edges.
@@ -116,18 +119,18 @@ fn with_boundaries(view: View, boundaries: &[Boundary]) -> View {
 /// Planes across the roof that turn a little from one to the next.
 pub fn planes() -> Vec<Plane> {
     let plane = |k: i32| {
-        let t = f64::from(k) / 5.0 - 0.5;
-        let angle = (38.0 + 14.0 * t).to_radians();
+        let t = f64::from(k) / 6.0 - 0.5;
+        let angle = (42.0 + 20.0 * t).to_radians();
         let normal = DVec3::new(angle.cos(), angle.sin(), 0.18 * t);
-        Plane { normal, offset: normal.dot(DVec3::new(2.5 * t + 0.1, 1.0 * t, 0.0)) }
+        Plane { normal, offset: normal.dot(DVec3::new(2.66 * t + 0.14, 1.5 * t, 0.0)) }
     };
-    (0..6).map(plane).collect()
+    (0..7).map(plane).collect()
 }
 
 pub fn figure5(folder: &Path) -> Result<Group> {
     let mut group = Group::new(
         "Fig. 5: the two fields of asymptotic directions, and boundaries of four kinds",
-        "A roof of 91 by 61 points; eight levels of each function, or six planes.",
+        "A roof of 91 by 61 points; eight levels of each function, or seven planes.",
     );
     let mesh = roof().mesh(91, 61)?;
     let family = 0;
@@ -198,7 +201,7 @@ pub fn figure5(folder: &Path) -> Result<Group> {
 pub fn figure6(folder: &Path) -> Result<Group> {
     let mut group = Group::new(
         "Fig. 6: planar boundaries",
-        "Six planes across the roof, each checked against the field that it crosses.",
+        "Seven planes across the roof, each checked against the field that it crosses.",
     );
     let mesh = roof().mesh(91, 61)?;
     let family = 0;
@@ -207,7 +210,7 @@ pub fn figure6(folder: &Path) -> Result<Group> {
     for (k, angle) in angles.iter().enumerate() {
         group.at_least(&format!("plane {}: least angle to the field, degrees", k + 1), angle.to_degrees(), 15.0);
     }
-    let boundaries = &design.boundaries().boundaries[1..7];
+    let boundaries = &design.boundaries().boundaries[1..=planes().len()];
     let mut cut = base("planes and their sections", &mesh);
     for (plane, boundary) in planes().iter().zip(boundaries) {
         let points = on_surface(boundary);
@@ -217,10 +220,19 @@ pub fn figure6(folder: &Path) -> Result<Group> {
         let up = if up.z < 0.0 { -up } else { up };
         // The part of the plane above the surface, up to a level line.
         let top = points.iter().map(|p| p.dot(up)).fold(f64::NEG_INFINITY, f64::max) + 0.22;
-        let (first, last) = (points[0], points[points.len() - 1]);
-        let mut corners = points.clone();
-        corners.extend([last, first].map(|end| end + (top - end.dot(up)) * up));
-        cut = cut.face(&corners, [0.99, 0.80, 0.50], 0.45);
+        let lifted = |k: usize, part: f64| points[k] + part * (top - points[k].dot(up)) * up;
+        let (columns, rows) = (30, 8);
+        let column = |i: usize| i * (points.len() - 1) / columns;
+        for (i, j) in (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j))) {
+            let [low, high] = [j, j + 1].map(|j| j as f64 / rows as f64);
+            let [from, to] = [i, i + 1].map(column);
+            let corners = [lifted(from, low), lifted(to, low), lifted(to, high), lifted(from, high)];
+            cut = cut.glass(&corners, [0.98, 0.74, 0.38], 0.38);
+        }
+        for k in [0, points.len() - 1] {
+            cut = cut.line(&(0..=8).map(|j| lifted(k, f64::from(j) / 8.0)).collect::<Vec<_>>(), EDGE, 0.9);
+        }
+        cut = cut.line(&(0..=columns).map(|i| lifted(column(i), 1.0)).collect::<Vec<_>>(), EDGE, 0.9);
         cut = cut.line(&points, RED, 3.0);
     }
     let curves = curves(&design, &diagonal(family), 19)?;

@@ -21,22 +21,38 @@ const RIM: Rgb = [0.30, 0.33, 0.40];
 /// Rulings are drawn in so many pieces, so that each is as near as it is.
 const PIECES: usize = 10;
 
-/// Triangles of parameters of what is left of a strip, with no edge longer than this in space.
+/// Triangles of parameters of what is left of a strip, with edges of about this length in space.
 fn pieces(strip: &Strip, trimmed: &Trimmed, longest: f64) -> Vec<[[f64; 2]; 3]> {
     let at = |[u, v]: [f64; 2]| strip.at(u, v).point;
-    let mut waiting: Vec<[[f64; 2]; 3]> =
-        trimmed.triangles().iter().map(|corners| corners.map(|i| trimmed.parameters()[i as usize])).collect();
+    let columns = TRIM.columns_per_span * strip.basis().spans();
+    let u = |k: usize| strip.length_u() * k as f64 / columns as f64;
+    let parts: Vec<Vec<[f64; 2]>> = (0..=columns).map(|k| trimmed.ruling_parts(u(k))).collect();
     let mut found = Vec::new();
-    while let Some(triangle) = waiting.pop() {
-        let length = |k: &usize| at(triangle[*k]).distance(at(triangle[(k + 1) % 3]));
-        let k = (0..3).max_by(|a, b| length(a).total_cmp(&length(b))).unwrap_or(0);
-        if length(&k) <= longest {
-            found.push(triangle);
+    for k in 0..columns {
+        if parts[k].len() != parts[k + 1].len() {
+            // Where a piece begins or ends.
+            let is_here = |corners: &[[f64; 2]; 3]| {
+                let middle = corners.iter().map(|corner| corner[0]).sum::<f64>() / 3.0;
+                middle > u(k) && middle < u(k + 1)
+            };
+            let triangles = trimmed.triangles().iter().map(|corners| corners.map(|i| trimmed.parameters()[i as usize]));
+            found.extend(triangles.filter(is_here));
             continue;
         }
-        let [a, b, c] = [0, 1, 2].map(|i| triangle[(k + i) % 3]);
-        let middle = [0, 1].map(|i| 0.5 * (a[i] + b[i]));
-        waiting.extend([[a, middle, c], [middle, b, c]]);
+        for (before, after) in parts[k].iter().zip(&parts[k + 1]) {
+            let corner = |s: f64, t: f64| {
+                let [low, high] = [0, 1].map(|end| before[end] + s * (after[end] - before[end]));
+                [u(k) + s * (u(k + 1) - u(k)), low + t * (high - low)]
+            };
+            let count = |from: [f64; 2], to: [f64; 2]| ((at(from).distance(at(to)) / longest).ceil() as usize).max(1);
+            let wide = count(corner(0.0, 0.0), corner(1.0, 0.0)).max(count(corner(0.0, 1.0), corner(1.0, 1.0)));
+            let high = count(corner(0.0, 0.0), corner(0.0, 1.0)).max(count(corner(1.0, 0.0), corner(1.0, 1.0)));
+            for (i, j) in (0..wide).flat_map(|i| (0..high).map(move |j| (i, j))) {
+                let at = |i: usize, j: usize| corner(i as f64 / wide as f64, j as f64 / high as f64);
+                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                found.extend([[a, b, c], [a, c, d]]);
+            }
+        }
     }
     found
 }
@@ -57,7 +73,24 @@ pub fn faces(
     view
 }
 
-/// Trimmed strips in one colour where a function of strip and parameters is below 0, in the other where it is not, shaded or flat.
+/// The part of a triangle of parameters where a function, given at its corners, times a sign is not below 0.
+fn clipped(piece: [[f64; 2]; 3], values: [f64; 3], sign: f64) -> Vec<[f64; 2]> {
+    let mut corners = Vec::new();
+    for k in 0..3 {
+        let next = (k + 1) % 3;
+        let [from, to] = [k, next].map(|k| sign * values[k]);
+        if from >= 0.0 {
+            corners.push(piece[k]);
+        }
+        if (from >= 0.0) != (to >= 0.0) {
+            let part = from / (from - to);
+            corners.push([0, 1].map(|c| piece[k][c] + part * (piece[next][c] - piece[k][c])));
+        }
+    }
+    if corners.len() > 2 { corners } else { Vec::new() }
+}
+
+/// Trimmed strips in one colour where a function of strip and parameters is below 0, in the other where it is not.
 pub fn two_tones(
     mut view: View,
     strips: &[Strip],
@@ -65,27 +98,15 @@ pub fn two_tones(
     longest: f64,
     value: &dyn Fn(usize, f64, f64) -> f64,
     colours: [Rgb; 2],
-    is_lit: bool,
 ) -> View {
     for (i, (strip, trimmed)) in strips.iter().zip(trimmed).enumerate() {
         for piece in pieces(strip, trimmed, longest) {
             let values = piece.map(|[u, v]| value(i, u, v));
             for (sign, colour) in [-1.0, 1.0].into_iter().zip(colours) {
-                let mut corners = Vec::new();
-                for k in 0..3 {
-                    let next = (k + 1) % 3;
-                    let [from, to] = [k, next].map(|k| sign * values[k]);
-                    if from >= 0.0 {
-                        corners.push(piece[k]);
-                    }
-                    if (from >= 0.0) != (to >= 0.0) {
-                        let part = from / (from - to);
-                        corners.push([0, 1].map(|c| piece[k][c] + part * (piece[next][c] - piece[k][c])));
-                    }
-                }
-                if corners.len() > 2 {
+                let corners = clipped(piece, values, sign);
+                if !corners.is_empty() {
                     let points: Vec<DVec3> = corners.iter().map(|&[u, v]| strip.at(u, v).point).collect();
-                    view = if is_lit { view.smooth_face(&points, colour) } else { view.flat_face(&points, colour) };
+                    view = view.smooth_face(&points, colour);
                 }
             }
         }
@@ -93,8 +114,27 @@ pub fn two_tones(
     view
 }
 
-/// How strips are trimmed to be drawn: as finely as is seen.
-pub const TRIM: TrimOptions = TrimOptions { tolerance: 2e-4, columns_per_span: 6 };
+/// The same as patches over faces of the second colour: of sharp edges, where strips hide nothing of each other.
+pub fn pattern(
+    view: View,
+    strips: &[Strip],
+    trimmed: &[Trimmed],
+    longest: f64,
+    value: &dyn Fn(usize, f64, f64) -> f64,
+    colours: [Rgb; 2],
+) -> View {
+    let mut view = faces(view, strips, trimmed, 2.0 * longest, &|_| colours[1]);
+    for (i, (strip, trimmed)) in strips.iter().zip(trimmed).enumerate() {
+        let clip = |piece: [[f64; 2]; 3]| clipped(piece, piece.map(|[u, v]| value(i, u, v)), -1.0);
+        let polygons = pieces(strip, trimmed, longest).into_iter().map(clip).filter(|corners| !corners.is_empty());
+        let in_space = |corners: Vec<[f64; 2]>| corners.iter().map(|&[u, v]| strip.at(u, v).point).collect();
+        view = view.patch(polygons.map(in_space).collect(), colours[0]);
+    }
+    view
+}
+
+/// How strips are trimmed to be drawn.
+pub const TRIM: TrimOptions = TrimOptions { tolerance: 1e-7, columns_per_span: 6 };
 
 /// How long faces are at most, over the size of what is drawn.
 const FINE: f64 = 1.0 / 60.0;
@@ -108,8 +148,10 @@ fn size(strips: &[Strip]) -> f64 {
 /// Boundaries of trimmed strips in bold, the rim of the surface thinner.
 pub fn outlines(mut view: View, strips: &[Strip], trimmed: &[Trimmed]) -> View {
     let is_side = |v: f64| v < 1e-6 || v > 1.0 - 1e-6;
+    let shortest = size(strips) / 300.0;
     for (strip, trimmed) in strips.iter().zip(trimmed) {
         for contour in trimmed.pieces().iter().flatten() {
+            let mut rim: Vec<DVec3> = Vec::new();
             for (k, from) in contour.iter().enumerate() {
                 let to = contour[(k + 1) % contour.len()];
                 let parts = (((to[0] - from[0]).abs() / 0.12).ceil() as usize).max(1);
@@ -118,9 +160,18 @@ pub fn outlines(mut view: View, strips: &[Strip], trimmed: &[Trimmed]) -> View {
                     strip.at(from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])).point
                 };
                 let points: Vec<DVec3> = (0..=parts).map(at).collect();
-                let is_boundary = is_side(from[1]) && is_side(to[1]) && (from[1] - to[1]).abs() < 0.5;
-                view = if is_boundary { view.line(&points, INK, 2.6) } else { view.line(&points, RIM, 1.3) };
+                if is_side(from[1]) && is_side(to[1]) && (from[1] - to[1]).abs() < 0.5 {
+                    view = view.line(&points, INK, 2.6);
+                    rim.push(points[0]);
+                    view = view.line(&std::mem::take(&mut rim), RIM, 1.3);
+                    rim.push(points[parts]);
+                } else if rim.last().is_none_or(|last| last.distance(points[parts]) > shortest) {
+                    // The rim has far more points than are seen.
+                    rim.extend(points);
+                }
             }
+            rim.extend(contour.first().map(|[u, v]| strip.at(*u, *v).point));
+            view = view.line(&rim, RIM, 1.3);
         }
     }
     view
@@ -176,7 +227,7 @@ pub fn overlay(view: View, strips: &[Strip], trimmed: &[Trimmed], surface: &dyn 
         let towards = if foot.normal.dot(sight) < 0.0 { foot.normal } else { -foot.normal };
         (point - foot.point).dot(towards)
     };
-    two_tones(view, strips, trimmed, 0.5 * FINE * size(strips), &front, [REFERENCE, colour], true)
+    two_tones(view, strips, trimmed, 0.5 * FINE * size(strips), &front, [REFERENCE, colour])
 }
 
 /// A surface without edges.

@@ -92,15 +92,17 @@ pub fn figure4(folder: &Path) -> Result<Group> {
         let corners = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
         close = close.smooth_face(&corners, [0.99, 0.83, 0.60]);
     }
+    let is_within = |p: &DVec3| (*p - at).dot(e1).abs().max((*p - at).dot(e2).abs()) < reach;
     for family in 0..2 {
-        let a = 1.5 * reach * found.family(family)?[point];
-        close = close.line(&in_pieces(at - a, at + a), BLUE, 1.5);
+        let a = found.family(family)?[point];
+        // Where the section itself is not.
+        for side in [-1.0, 1.0] {
+            let line: Vec<DVec3> = in_pieces(at, at + 1.55 * side * reach * a);
+            close = close.line(&line.into_iter().filter(|p| !is_within(p)).collect::<Vec<_>>(), BLUE, 2.4);
+        }
     }
     close = section.branches.iter().fold(close, |view, branch| {
-        let is_within = |p: &DVec3| (*p - at).dot(e1).abs().max((*p - at).dot(e2).abs()) < reach;
-        // A little above, to be over the lines of the directions.
-        let points: Vec<DVec3> = branch.iter().copied().take_while(is_within).map(|p| p + 0.05 * normal).collect();
-        view.line(&points, ORANGE, 3.6)
+        view.line(&branch.iter().copied().take_while(is_within).collect::<Vec<_>>(), ORANGE, 3.6)
     });
     let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]];
     let square: Vec<DVec3> = square.iter().map(|[s, t]| at + reach * (*s * e1 + *t * e2)).collect();

@@ -87,7 +87,7 @@ pub fn figure9(folder: &Path) -> Result<Group> {
         "Part of Enneper's surface; boundaries that are shortest paths can be bent from straight boards.",
     );
     let shape = Shape::new("Enneper's surface", [[-0.72, 0.72], [-0.72, 0.72]], surfaces::enneper());
-    let mesh = shape.mesh(81, 81)?;
+    let mesh = shape.mesh(121, 121)?;
     let mut plain = with_levels(&mesh, 0, LevelWeights::ORTHOGONAL, &Levels::Count(9))?;
     let straight = LevelWeights { orthogonal: 0.01, ..LevelWeights::GEODESIC };
     let mut design = with_levels(&mesh, 0, straight, &Levels::Count(9))?;
@@ -105,11 +105,15 @@ pub fn figure9(folder: &Path) -> Result<Group> {
         "strips, orthogonal boundaries: largest deviation / diagonal",
         orthogonal.report.strips_to_reference.max / plain.mesh().diagonal(),
     );
-    let view = |title: &str| View::new(title, 20.0, 40.0);
+    let view = |title: &str| View::new(title, 15.0, 66.0);
+    let mut suggested = surface(view("(a) suggested boundaries"), &mesh, SURFACE);
+    for boundary in &design.boundaries().boundaries {
+        suggested = suggested.line(&on_surface(boundary), ORANGE, 2.8);
+    }
     let diagonal = design.mesh().diagonal();
     let words = format!("geodesic curvature × size {bent:.2},\nwith orthogonal boundaries {sideways:.2}");
     let views = vec![
-        whole_strips(view("(a) optimised strips"), design.strips(), 2).caption(words),
+        suggested.caption(words),
         strips(view("(b) trimmed"), design.strips(), &made.trimmed, 2).caption(in_words(&made.report, diagonal)),
         outlines(
             overlay(view("(c) strips (white) and surface (blue)"), design.strips(), &made.trimmed, &reference, PALE),
@@ -132,12 +136,13 @@ pub fn figure10(folder: &Path) -> Result<Group> {
         "Fig. 10: planar boundaries",
         "Strips between the sections of Fig. 6, optimised with each boundary in its plane.",
     );
-    let mesh = roof().mesh(91, 61)?;
+    let mesh = roof().mesh(137, 91)?;
     let mut design = Design::new(&mesh, &FieldOptions { family: 0, ..FieldOptions::default() })?;
     design.set_planar_boundaries(&planes(), &PlanarOptions::default())?;
     let made = make(&mut design, 14, |design| Ok(design.planar_conditions()))?;
     judged(&mut group, &design, &made.report);
     group.plain("iterations", made.iterations as f64);
+    let reference = ReferenceMesh::new(design.mesh());
     let mut off = 0.0_f64;
     for (k, plane) in planes().iter().enumerate() {
         let (before, after) = (&design.strips()[k], &design.strips()[k + 1]);
@@ -150,7 +155,6 @@ pub fn figure10(folder: &Path) -> Result<Group> {
         }
     }
     group.at_most("boundaries off their planes", off, 1e-10);
-    let reference = ReferenceMesh::new(design.mesh());
     let view = |title: &str| View::new(title, -32.0, 44.0);
     let diagonal = design.mesh().diagonal();
     let views = vec![

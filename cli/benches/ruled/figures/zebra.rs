@@ -16,7 +16,7 @@ use shapeop::mesh::surfaces;
 use shapeop_cli::colours::Rgb;
 use shapeop_cli::scene::{Scene, View};
 
-use super::drawing::{TRIM, strips, told, two_tones};
+use super::drawing::{TRIM, pattern, strips, told};
 use super::{make, with_levels};
 use crate::group::Group;
 use crate::shapes::Shape;
@@ -73,7 +73,7 @@ pub fn figure2(folder: &Path) -> Result<Group> {
             let jet = of[i].at(u, v);
             zebra(&[jet.point], &[jet.normal()], Eye::Along(sight), &stripes).map_or(0.0, |found| found[0])
         };
-        Ok(two_tones(view(title), of, trimmed, diagonal / 90.0, &value, [DARK, LIGHT], false))
+        Ok(pattern(view(title), of, trimmed, diagonal / 90.0, &value, [DARK, LIGHT]))
     };
     let views = vec![
         strips(view("rulings along asymptotic curves"), design.strips(), &made.trimmed, 3).caption(sums(&made.report)),
