@@ -58,7 +58,7 @@ pub fn figure2(folder: &Path) -> Result<Group> {
     let view = |title: &str| View::new(title, azimuth, tilt);
     let sums = |report: &shapeop::geometry::ruled::report::Report| {
         format!(
-            "tangent planes of neighbours differ by {:.2}° on average, {:.1}° at most;\noff the surface by {:.1e} of its size",
+            "tangent planes of neighbours differ by {:.2}° on average,\n{:.1}° at most; off the surface by {:.1e} of its size",
             report.mean_kink_deg,
             report.max_kink_deg,
             report.strips_to_reference.max / diagonal
@@ -77,14 +77,16 @@ pub fn figure2(folder: &Path) -> Result<Group> {
     };
     let views = vec![
         strips(view("rulings along asymptotic curves"), design.strips(), &made.trimmed, 3).caption(sums(&made.report)),
-        mirrored("the same, mirroring stripes: they go on across strips", design.strips(), &made.trimmed)?,
-        strips(view("rulings along meridians"), &cones, &trimmed, 3).caption(sums(&of_cones)),
-        mirrored("the same, mirroring stripes: they break at each boundary", &cones, &trimmed)?,
+        mirrored("the same strips mirror stripes", design.strips(), &made.trimmed)?
+            .caption("stripes go on from strip to strip".to_owned()),
+        mirrored("rulings along meridians instead", &cones, &trimmed)?.caption(sums(&of_cones)),
     ];
     let scene = Scene {
         title: "Ruled strips join smoothly where their rulings follow asymptotic curves".to_owned(),
-        subtitle: format!("Part of a catenoid as {count} ruled strips; rulings themselves need not join"),
-        columns: 2,
+        subtitle: format!(
+            "Part of a catenoid as {count} ruled strips; rulings need not meet at boundaries. Along meridians each strip is part of a cone, and stripes break"
+        ),
+        columns: 3,
         views,
     };
     group.picture = Some(scene.write(folder, "zebra")?);
