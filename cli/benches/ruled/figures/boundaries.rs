@@ -22,10 +22,10 @@ use crate::shapes::roof;
 /// The edges of planes.
 const EDGE: [f64; 3] = [0.72, 0.50, 0.22];
 
-const THIN: [f64; 3] = [0.45, 0.60, 0.80];
+pub const THIN: [f64; 3] = [0.45, 0.60, 0.80];
 
-/// Asymptotic curves from points evenly spread over a curve across them, and from its ends on along the rim.
-fn curves(design: &Design, across: &[DVec3], count: usize) -> Result<Vec<Vec<DVec3>>> {
+/// Asymptotic curves from points evenly spread over a curve across them.
+pub fn curves(design: &Design, across: &[DVec3], count: usize) -> Result<Vec<Vec<DVec3>>> {
     let reference = ReferenceMesh::new(design.mesh());
     let tracer = Tracer::new(design.mesh(), design.field(), &Options::default())?;
     let curve = |k: usize| {

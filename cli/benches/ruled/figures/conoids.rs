@@ -22,6 +22,7 @@ use shapeop::mesh::{Mesh, SurfacePoint, TriangleMesh, surfaces};
 use shapeop_cli::colours::Rgb;
 use shapeop_cli::scene::{BLUE, ORANGE, Scene, View};
 
+use super::boundaries::{THIN, curves};
 use super::drawing::{
     REFERENCE, SURFACE, TRIM, in_words, judged, on_surface, outlines, overlay, rulings, strips, surface,
 };
@@ -61,6 +62,10 @@ pub fn figure7(folder: &Path) -> Result<Group> {
     group.plain("root mean square of a·w, conoidal boundaries", off(&found));
     group.at_least("by how much it fell", before / off(&found), 10.0);
     let mut on_shell = surface(View::new("(a) boundaries on the surface", -52.0, 30.0), &mesh, SURFACE);
+    let middle = on_surface(&design.boundaries().boundaries[design.boundaries().boundaries.len() / 2]);
+    for curve in curves(&design, &middle, 17)? {
+        on_shell = on_shell.line(&curve, THIN, 0.8);
+    }
     for boundary in &design.boundaries().boundaries {
         on_shell = on_shell.line(&on_surface(boundary), ORANGE, 3.0);
     }
@@ -98,7 +103,7 @@ pub fn figure7(folder: &Path) -> Result<Group> {
     let scene = Scene {
         title: "Conoidal strips: boundaries whose ruling directions are on great circles".to_owned(),
         subtitle:
-            "Left: a part of a catenoid; right: each point is where its ruling points to; blue: the whole great circles"
+            "Left: a part of a catenoid with asymptotic curves; right: each point is where its ruling points to; blue lines: great circles"
                 .to_owned(),
         columns: 2,
         views: vec![on_shell, sphere.caption(words)],
@@ -126,7 +131,7 @@ pub fn figure12(folder: &Path) -> Result<Group> {
     let reference = ReferenceMesh::new(&triangles);
     let curve =
         |s: f64| -> Vec<DVec3> { (0..=800).map(|i| shape.point(2.7 * f64::from(i) / 800.0 - 0.35, s)).collect() };
-    let (first, second) = (curve(0.9), curve(2.1));
+    let (first, second) = (curve(0.86), curve(2.12));
     let cover = shape.mesh(61, 21)?.points;
     let find = |is_conoidal| -> Result<Single> {
         let options =
@@ -226,7 +231,7 @@ pub fn figure12(folder: &Path) -> Result<Group> {
 }
 
 /// The thickness of planks.
-const THICKNESS: f64 = 0.08;
+const THICKNESS: f64 = 0.07;
 
 const WOODS: [Rgb; 3] = [[0.90, 0.76, 0.56], [0.83, 0.66, 0.45], [0.95, 0.84, 0.67]];
 
@@ -251,11 +256,11 @@ pub fn figures13_14(folder: &Path) -> Result<Group> {
     );
     let shape = Shape::new("catenoid", [[0.0, 0.8], [0.3, 1.3]], surfaces::catenoid());
     let mesh = shape.mesh(61, 61)?;
-    let mut design = with_levels(&mesh, 1, LevelWeights::CONOIDAL, &Levels::Count(6))?;
+    let mut design = with_levels(&mesh, 1, LevelWeights::CONOIDAL, &Levels::Count(4))?;
     let made = make(&mut design, 12, |design| Ok(design.conoidal_conditions()?.0))?;
     judged(&mut group, &design, &made.report);
     let diagonal = design.mesh().diagonal();
-    let turned = |title: &str| View::new(title, 100.0, 14.0);
+    let turned = |title: &str| View::new(title, -67.0, 30.0);
     let shown = strips(turned("conoidal strips, trimmed"), design.strips(), &made.trimmed, 2);
     let mut built = turned("planks parallel to the rulings of each strip");
     let mut all = Vec::new();
@@ -272,7 +277,7 @@ pub fn figures13_14(folder: &Path) -> Result<Group> {
     group.plain("strip on the sheet: planks", largest.planks.len() as f64);
     group.plain("strip on the sheet: part that is cut off", largest.offcut);
     let axis = DVec3::from_array(largest.axis);
-    let aside = stacked(View::new("one strip, seen along its rulings", 12.0, 8.0), &largest.planks, *number);
+    let aside = stacked(View::new("one strip from another side", 20.0, 16.0), &largest.planks, *number);
     let first = Planks { planks: largest.planks[..6.min(largest.planks.len())].to_vec(), ..largest.clone() };
     let drawing = sheet(&first, &format!("strip {number}, the first"), 1000.0)?;
     let drawing = drawing.replace("stroke-width=\"0.1\"", "stroke-width=\"2.5\"");

@@ -147,11 +147,16 @@ fn size(strips: &[Strip]) -> f64 {
 
 /// Boundaries of trimmed strips in bold, the rim of the surface thinner.
 pub fn outlines(mut view: View, strips: &[Strip], trimmed: &[Trimmed]) -> View {
-    let is_side = |v: f64| v < 1e-6 || v > 1.0 - 1e-6;
+    let is_side = |v: f64| !(1e-6..=1.0 - 1e-6).contains(&v);
     let shortest = size(strips) / 300.0;
     for (strip, trimmed) in strips.iter().zip(trimmed) {
         for contour in trimmed.pieces().iter().flatten() {
             let mut rim: Vec<DVec3> = Vec::new();
+            // Not where all that is left of a ruling is its end.
+            let is_beside = |u: f64, v: f64| {
+                let parts = trimmed.ruling_parts(u);
+                parts.iter().any(|[low, high]| high - low > 5e-3 && (low - v).abs().min((high - v).abs()) < 1e-3)
+            };
             for (k, from) in contour.iter().enumerate() {
                 let to = contour[(k + 1) % contour.len()];
                 let parts = (((to[0] - from[0]).abs() / 0.12).ceil() as usize).max(1);
@@ -161,8 +166,14 @@ pub fn outlines(mut view: View, strips: &[Strip], trimmed: &[Trimmed]) -> View {
                 };
                 let points: Vec<DVec3> = (0..=parts).map(at).collect();
                 if is_side(from[1]) && is_side(to[1]) && (from[1] - to[1]).abs() < 0.5 {
-                    view = view.line(&points, INK, 2.6);
+                    for i in 0..parts {
+                        let u = from[0] + (i as f64 + 0.5) / parts as f64 * (to[0] - from[0]);
+                        if is_beside(u, from[1]) {
+                            view = view.line(&points[i..i + 2], INK, 2.6);
+                        }
+                    }
                     rim.push(points[0]);
+                    rim.dedup();
                     view = view.line(&std::mem::take(&mut rim), RIM, 1.3);
                     rim.push(points[parts]);
                 } else if rim.last().is_none_or(|last| last.distance(points[parts]) > shortest) {
@@ -171,6 +182,7 @@ pub fn outlines(mut view: View, strips: &[Strip], trimmed: &[Trimmed]) -> View {
                 }
             }
             rim.extend(contour.first().map(|[u, v]| strip.at(*u, *v).point));
+            rim.dedup();
             view = view.line(&rim, RIM, 1.3);
         }
     }

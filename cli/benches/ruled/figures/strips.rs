@@ -36,9 +36,9 @@ pub fn figure8(folder: &Path) -> Result<Group> {
         DVec3::new(1.25 * bulge * angle.cos() + 0.35 * h, 0.9 * bulge * angle.sin() - 0.1 * h, 1.15 * h)
     };
     let mesh = tube(120, 41, waist)?;
-    let mut design = with_levels(&mesh, 0, LevelWeights::DIRECTION, &Levels::Count(16))?;
+    let mut design = with_levels(&mesh, 0, LevelWeights::DIRECTION, &Levels::Count(18))?;
     let suggested = design.boundaries().boundaries.clone();
-    let made = make(&mut design, 12, |_| Ok(Vec::new()))?;
+    let made = make(&mut design, 16, |_| Ok(Vec::new()))?;
     judged(&mut group, &design, &made.report);
     group.plain("iterations", made.iterations as f64);
     let view = |title: &str| View::new(title, 28.0, 20.0);
