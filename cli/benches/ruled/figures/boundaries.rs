@@ -190,7 +190,9 @@ pub fn figure5(folder: &Path) -> Result<Group> {
     views.push(with_boundaries(view, &design.boundaries().boundaries).caption(caption));
     let scene = Scene {
         title: "From asymptotic curves to strip boundaries".to_owned(),
-        subtitle: "Blue: asymptotic curves, which rulings follow; orange: boundaries suggested across them, by what is asked of them".to_owned(),
+        subtitle: "Blue: asymptotic curves, which rulings follow; orange: boundaries suggested across them, by \
+            what is asked of them"
+            .to_owned(),
         columns: 3,
         views,
     };
@@ -241,7 +243,9 @@ pub fn figure6(folder: &Path) -> Result<Group> {
     let listed = angles.iter().map(|angle| format!("{:.0}°", angle.to_degrees())).collect::<Vec<_>>().join(", ");
     let scene = Scene {
         title: "Planar boundaries: sections that cross the rulings".to_owned(),
-        subtitle: "A section that runs along asymptotic curves would be no boundary: the angles between them must not be small".to_owned(),
+        subtitle: "A section that runs along asymptotic curves would be no boundary: the angles between them must \
+            not be small"
+            .to_owned(),
         columns: 2,
         views: vec![cut, crossed.caption(format!("least angles from the first plane to the last: {listed}"))],
     };

@@ -97,13 +97,15 @@ pub fn figure7(folder: &Path) -> Result<Group> {
         sphere = sphere.line(&directions.collect::<Vec<_>>(), ORANGE, 3.0);
     }
     let words = format!(
-        "off great circles by {:.1e}, root mean square;\nboundaries that are only orthogonal to the rulings by {before:.1e}",
+        "off great circles by {:.1e}, root mean square;\nboundaries that are only orthogonal to the rulings by \
+            {before:.1e}",
         off(&found)
     );
     let scene = Scene {
         title: "Conoidal strips: boundaries whose ruling directions are on great circles".to_owned(),
         subtitle:
-            "Left: a part of a catenoid with asymptotic curves; right: each point is where its ruling points to; blue lines: great circles"
+            "Left: a part of a catenoid with asymptotic curves; right: each point is where its ruling points to; \
+                blue lines: great circles"
                 .to_owned(),
         columns: 2,
         views: vec![on_shell, sphere.caption(words)],
@@ -123,7 +125,8 @@ const AMBER: Rgb = [0.97, 0.72, 0.38];
 pub fn figure12(folder: &Path) -> Result<Group> {
     let mut group = Group::new(
         "Fig. 12: one conoidal strip against a general one",
-        "A surface between two drawn curves that is no ruled surface, approximated once with rulings parallel to a plane.",
+        "A surface between two drawn curves that is no ruled surface, approximated once with rulings parallel to \
+            a plane.",
     );
     let shape = bent_conoid(0.07, 0.08);
     let mesh = shape.mesh(121, 61)?;
@@ -191,7 +194,7 @@ pub fn figure12(folder: &Path) -> Result<Group> {
             format!("rulings {tilt:.1}° off a plane, root mean square")
         };
         views.push(outlines(rulings(faces, strip, &trimmed, 4), strip, &trimmed).caption(words));
-        let over = overlay(view(&format!("{name}, laid over")), strip, &trimmed, &reference, colour);
+        let over = overlay(view(&format!("{name}, laid over")), strip, &trimmed, &reference, [REFERENCE, colour]);
         let words = format!(
             "off the surface by {:.1e} of its size at most,\n{:.1e} root mean square",
             of.strips_to_reference.max / diagonal,
@@ -206,7 +209,7 @@ pub fn figure12(folder: &Path) -> Result<Group> {
         std::slice::from_ref(general.strip()),
         &general_strip,
         &other,
-        AMBER,
+        [GREEN, AMBER],
     );
     let apart = general.strip().mesh(121, 21)?.points.into_iter().map(|p| {
         let foot = shapeop::mesh::ReferenceSurface::nearest(&other, p);
@@ -214,9 +217,10 @@ pub fn figure12(folder: &Path) -> Result<Group> {
     });
     let apart = apart.fold(0.0, f64::max) / diagonal;
     group.plain("one strip off the other, largest / diagonal", apart);
-    views.push(outlines(both, std::slice::from_ref(general.strip()), &general_strip).caption(format!(
-        "amber and (behind it) blue for the conoidal one;\napart by {apart:.1e} of the size at most"
-    )));
+    views.push(
+        outlines(both, std::slice::from_ref(general.strip()), &general_strip)
+            .caption(format!("green where the conoidal one is in front;\napart by {apart:.1e} of the size at most")),
+    );
     views.extend(overlaid);
     let scene = Scene {
         title: "That rulings be parallel to a plane costs little".to_owned(),
@@ -252,7 +256,8 @@ fn stacked(mut view: View, planks: &[Plank], tone: usize) -> View {
 pub fn figures13_14(folder: &Path) -> Result<Group> {
     let mut group = Group::new(
         "Figs. 13 and 14: planks",
-        "Conoidal strips of part of a catenoid, each built from planks of one thickness, and the sheet they are cut from.",
+        "Conoidal strips of part of a catenoid, each built from planks of one thickness, and the sheet they are \
+            cut from.",
     );
     let shape = Shape::new("catenoid", [[0.0, 0.8], [0.3, 1.3]], surfaces::catenoid());
     let mesh = shape.mesh(61, 61)?;
@@ -283,12 +288,20 @@ pub fn figures13_14(folder: &Path) -> Result<Group> {
     let drawing = drawing.replace("stroke-width=\"0.1\"", "stroke-width=\"2.5\"");
     let scene = Scene {
         title: "Conoidal strips are built from planks of constant thickness".to_owned(),
-        subtitle: "Rulings of a strip are parallel to a plane: planks parallel to it, with straight cuts, are stacked along its axis".to_owned(),
+        subtitle: "Rulings of a strip are parallel to a plane: planks parallel to it, with straight cuts, are \
+            stacked along its axis"
+            .to_owned(),
         columns: 2,
         views: vec![
             shown.caption(in_words(&made.report, diagonal)),
             built.caption(format!("{count} planks of thickness {THICKNESS}, of whole strips")),
-            aside.caption(format!("{} planks, axis ({:.2}, {:.2}, {:.2})", largest.planks.len(), axis.x, axis.y, axis.z)),
+            aside.caption(format!(
+                "{} planks, axis ({:.2}, {:.2}, {:.2})",
+                largest.planks.len(),
+                axis.x,
+                axis.y,
+                axis.z
+            )),
             View::of_sheet("the sheet they are cut from: its first planks", &drawing)?.caption(format!(
                 "red: cuts; blue: rulings in the lower and (dashed) upper face; of all boards {:.0} % are cut off",
                 100.0 * largest.offcut

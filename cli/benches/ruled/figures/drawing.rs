@@ -230,16 +230,22 @@ pub fn whole_strips(mut view: View, strips: &[Strip], rulings_per_span: usize) -
     view
 }
 
-/// Strips and a surface laid over each other: in this colour where the strip is in front, blue where the surface is.
-pub fn overlay(view: View, strips: &[Strip], trimmed: &[Trimmed], surface: &dyn ReferenceSurface, colour: Rgb) -> View {
-    let sight = faces(view.clone(), strips, trimmed, FINE * size(strips), &|_| colour).sight();
+/// Strips and a surface laid over each other: the first colour is of the surface, where it is in front, the second of strips.
+pub fn overlay(
+    view: View,
+    strips: &[Strip],
+    trimmed: &[Trimmed],
+    surface: &dyn ReferenceSurface,
+    colours: [Rgb; 2],
+) -> View {
+    let sight = faces(view.clone(), strips, trimmed, FINE * size(strips), &|_| colours[1]).sight();
     let front = |i: usize, u: f64, v: f64| {
         let point = strips[i].at(u, v).point;
         let foot = surface.nearest(point);
         let towards = if foot.normal.dot(sight) < 0.0 { foot.normal } else { -foot.normal };
         (point - foot.point).dot(towards)
     };
-    two_tones(view, strips, trimmed, 0.5 * FINE * size(strips), &front, [REFERENCE, colour])
+    two_tones(view, strips, trimmed, 0.5 * FINE * size(strips), &front, colours)
 }
 
 /// A surface without edges.

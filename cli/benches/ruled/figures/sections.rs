@@ -26,7 +26,8 @@ const POSITIVE: [f64; 3] = [0.96, 0.92, 0.84];
 pub fn figure4(folder: &Path) -> Result<Group> {
     let mut group = Group::new(
         "Fig. 4: a surface cut with its own tangent planes",
-        "z = 0.9 sin x sin y: at saddles four branches leave a point along the two asymptotic directions, elsewhere none.",
+        "z = 0.9 sin x sin y: at saddles four branches leave a point along the two asymptotic directions, \
+            elsewhere none.",
     );
     let mesh =
         height_field(SIDE, SIDE, [-0.3, 1.5 * PI + 0.3], [-0.3, 1.5 * PI + 0.3], |x, y| 0.9 * x.sin() * y.sin())?;
@@ -114,12 +115,14 @@ pub fn figure4(folder: &Path) -> Result<Group> {
         "orange: the section; blue: the asymptotic directions there;\nthe mean angle between them is {mean:.1}°"
     );
     let caption = format!(
-        "{crossed} points where the surface is a saddle (blue) have crossing branches,\n{bare} points on domes and bowls (red) have none"
+        "{crossed} points where the surface is a saddle (blue) have crossing branches,\n{bare} points on domes \
+            and bowls (red) have none"
     );
     let scene = Scene {
         title: "Asymptotic directions, found by cutting a surface with its own tangent planes".to_owned(),
         subtitle: format!(
-            "z = 0.9 sin x sin y as a mesh of {SIDE} by {SIDE} points; only where it is negatively curved (blue) rulings can follow it"
+            "z = 0.9 sin x sin y as a mesh of {SIDE} by {SIDE} points; only where it is negatively curved (blue) \
+                rulings can follow it"
         ),
         columns: 2,
         views: vec![close.caption(words), whole.caption(caption)],

@@ -16,7 +16,8 @@ use shapeop_cli::scene::{ORANGE, RED, Scene, View};
 
 use super::boundaries::{geodesic_curvature, planes};
 use super::drawing::{
-    STRIPS, SURFACE, faces, in_words, judged, on_surface, outlines, overlay, rulings, strips, surface, whole_strips,
+    REFERENCE, STRIPS, SURFACE, faces, in_words, judged, on_surface, outlines, overlay, rulings, strips, surface,
+    whole_strips,
 };
 use super::{judge, make, set_levels, with_levels};
 use crate::group::Group;
@@ -116,14 +117,22 @@ pub fn figure9(folder: &Path) -> Result<Group> {
         suggested.caption(words),
         strips(view("(b) trimmed"), design.strips(), &made.trimmed, 2).caption(in_words(&made.report, diagonal)),
         outlines(
-            overlay(view("(c) strips (white) and surface (blue)"), design.strips(), &made.trimmed, &reference, PALE),
+            overlay(
+                view("(c) strips (white) and surface (blue)"),
+                design.strips(),
+                &made.trimmed,
+                &reference,
+                [REFERENCE, PALE],
+            ),
             design.strips(),
             &made.trimmed,
         ),
     ];
     let scene = Scene {
         title: "Strips with geodesic boundaries on a minimal surface".to_owned(),
-        subtitle: "Part of Enneper's surface; boundaries are shortest paths, so that boards which are bent along them were straight".to_owned(),
+        subtitle: "Part of Enneper's surface; boundaries are shortest paths, so that boards which are bent along \
+            them were straight"
+            .to_owned(),
         columns: 3,
         views,
     };
@@ -162,14 +171,22 @@ pub fn figure10(folder: &Path) -> Result<Group> {
             .caption(format!("boundaries off their planes by {off:.0e}")),
         strips(view("(b) trimmed"), design.strips(), &made.trimmed, 2).caption(in_words(&made.report, diagonal)),
         outlines(
-            overlay(view("(c) strips (white) and surface (blue)"), design.strips(), &made.trimmed, &reference, PALE),
+            overlay(
+                view("(c) strips (white) and surface (blue)"),
+                design.strips(),
+                &made.trimmed,
+                &reference,
+                [REFERENCE, PALE],
+            ),
             design.strips(),
             &made.trimmed,
         ),
     ];
     let scene = Scene {
         title: "Strips with planar boundaries".to_owned(),
-        subtitle: "Each boundary stays exactly in its plane while the strips come as near to the surface and to each other as they can".to_owned(),
+        subtitle: "Each boundary stays exactly in its plane while the strips come as near to the surface and to \
+            each other as they can"
+            .to_owned(),
         columns: 3,
         views,
     };
@@ -196,7 +213,8 @@ fn rippled() -> Shape {
 pub fn figure11(folder: &Path) -> Result<Group> {
     let mut group = Group::new(
         "Fig. 11: strips that are too wide",
-        "A saddle with ripples that are as small as the strips are wide; the warning must come, and what it costs is told.",
+        "A saddle with ripples that are as small as the strips are wide; the warning must come, and what it costs \
+            is told.",
     );
     let mesh = rippled().mesh(121, 81)?;
     let mut design = with_levels(&mesh, 0, LevelWeights::EQUIDISTANT, &Levels::Width(0.6))?;
@@ -247,7 +265,8 @@ pub fn figure11(folder: &Path) -> Result<Group> {
             }
         };
         let caption = format!(
-            "{verdict};\noff the surface by {:.1e} of its size, kinks up to {:.1}°;\nwidths vary by {:.0} % as suggested, by {:.0} % when optimised",
+            "{verdict};\noff the surface by {:.1e} of its size, kinks up to {:.1}°;\nwidths vary by {:.0} % as \
+                suggested, by {:.0} % when optimised",
             report.strips_to_reference.max / diagonal,
             report.max_kink_deg,
             100.0 * before.report.width_variation,
@@ -260,7 +279,9 @@ pub fn figure11(folder: &Path) -> Result<Group> {
     group.at_least("deviation of wide strips over that of narrow ones", told[0].1 / told[1].1, 4.0);
     let scene = Scene {
         title: "Strips that are wide compared with the features of the surface".to_owned(),
-        subtitle: "A saddle with ripples: where strips are as wide as these are large they cannot follow it, and the report warns; narrower ones do".to_owned(),
+        subtitle: "A saddle with ripples: where strips are as wide as these are large they cannot follow it, and \
+            the report warns; narrower ones do"
+            .to_owned(),
         columns: 2,
         views,
     };

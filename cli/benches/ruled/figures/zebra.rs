@@ -27,7 +27,8 @@ const LIGHT: Rgb = [0.97, 0.97, 0.96];
 pub fn figure2(folder: &Path) -> Result<Group> {
     let mut group = Group::new(
         "Fig. 2: zebra stripes across ruled strips",
-        "A catenoid as strips along asymptotic curves, and as many along its meridians, which are no asymptotic curves.",
+        "A catenoid as strips along asymptotic curves, and as many along its meridians, which are no asymptotic \
+            curves.",
     );
     let shape = Shape::new("catenoid", [[0.2, 1.3], [-0.7, 0.7]], surfaces::catenoid());
     let mut design = with_levels(&shape.mesh(81, 81)?, 1, LevelWeights::ORTHOGONAL, &Levels::Count(9))?;
@@ -58,7 +59,8 @@ pub fn figure2(folder: &Path) -> Result<Group> {
     let view = |title: &str| View::new(title, azimuth, tilt);
     let sums = |report: &shapeop::geometry::ruled::report::Report| {
         format!(
-            "tangent planes of neighbours differ by {:.2}° on average,\n{:.1}° at most; off the surface by {:.1e} of its size",
+            "tangent planes of neighbours differ by {:.2}° on average,\n{:.1}° at most; off the surface by {:.1e} \
+                of its size",
             report.mean_kink_deg,
             report.max_kink_deg,
             report.strips_to_reference.max / diagonal
@@ -84,7 +86,8 @@ pub fn figure2(folder: &Path) -> Result<Group> {
     let scene = Scene {
         title: "Ruled strips join smoothly where their rulings follow asymptotic curves".to_owned(),
         subtitle: format!(
-            "Part of a catenoid as {count} ruled strips; rulings need not meet at boundaries. Along meridians each strip is part of a cone, and stripes break"
+            "Part of a catenoid as {count} ruled strips; rulings need not meet at boundaries. Along meridians \
+                each strip is part of a cone, and stripes break"
         ),
         columns: 3,
         views,
