@@ -4,3 +4,4 @@ pub mod camera;
 pub mod colours;
 pub mod picture;
 pub mod raster;
+pub mod scene;

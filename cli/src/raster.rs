@@ -31,6 +31,21 @@ pub fn png(svg: &str) -> Result<Vec<u8>> {
 
 /// The same with so many pixels per unit of the SVG.
 pub fn png_at(svg: &str, scale: f32) -> Result<Vec<u8>> {
+    rendered(svg, scale)?.encode_png().context("the picture could not be compressed")
+}
+
+/// The same, its channels rounded to 64 levels: where a surface is of many faces the file is half as large, and looks the same.
+pub fn small_png_at(svg: &str, scale: f32) -> Result<Vec<u8>> {
+    let mut pixels = rendered(svg, scale)?;
+    // All pixels are opaque. 255 stays 255.
+    let rounded = |channel: u8| ((u16::from(channel) + 2) / 4 * 4).min(255) as u8;
+    for channels in pixels.data_mut().chunks_exact_mut(4) {
+        channels[..3].iter_mut().for_each(|channel| *channel = rounded(*channel));
+    }
+    pixels.encode_png().context("the picture could not be compressed")
+}
+
+fn rendered(svg: &str, scale: f32) -> Result<Pixmap> {
     let options = Options { fontdb: fonts(), font_family: "Noto Sans".to_owned(), ..Options::default() };
     let tree = Tree::from_str(svg, &options).context("the picture could not be laid out")?;
     let size = tree.size();
@@ -38,7 +53,7 @@ pub fn png_at(svg: &str, scale: f32) -> Result<Vec<u8>> {
     let mut pixels = Pixmap::new(width, height).context("the picture has no size")?;
     pixels.fill(Color::WHITE);
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
-    pixels.encode_png().context("the picture could not be compressed")
+    Ok(pixels)
 }
 
 #[cfg(test)]

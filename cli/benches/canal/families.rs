@@ -14,8 +14,8 @@ use shapeop::geometry::canal::properties::Properties;
 use shapeop::geometry::canal::surface::{BaseKind, SuperCanal};
 
 use crate::group::Group;
-use crate::scene::{BLUE, ORANGE, Scene, View, WHITE};
 use crate::shapes::{farthest, shell};
+use shapeop_cli::scene::{BLUE, ORANGE, Scene, View, WHITE};
 
 const ROWS: usize = 17;
 const COLUMNS: usize = 13;

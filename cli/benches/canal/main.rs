@@ -5,7 +5,6 @@ mod figures;
 #[path = "../exploration/group.rs"]
 mod group;
 mod lengths;
-mod scene;
 mod shapes;
 mod speed;
 mod truths;

@@ -41,6 +41,11 @@ impl Group {
         self.push(what, value, Some(least), None);
     }
 
+    #[allow(dead_code, reason = "not every program has measures with both bounds")]
+    pub fn between(&mut self, what: &str, value: f64, [least, most]: [f64; 2]) {
+        self.push(what, value, Some(least), Some(most));
+    }
+
     fn push(&mut self, what: &str, value: f64, least: Option<f64>, most: Option<f64>) {
         self.measures.push(Measure { what: what.to_owned(), value, least, most });
     }

@@ -25,7 +25,7 @@ pub enum Area {
     Canal,
     /// Hard constraints: projections, exact planarity, IPOPT, the paper's figures, a large drag, contradictions, weights.
     Exploration,
-    /// Ruled free forms: strips of five surfaces, seconds per step for a large mesh.
+    /// Ruled free forms: ground truths, strips of five surfaces, the paper's figures with pictures, seconds per step for a large mesh.
     Ruled,
 }
 

@@ -16,8 +16,8 @@ use shapeop::mesh::curve::{Curve, NearestOnCurve, Spacing, Spline};
 
 use super::{exact, met, sampled};
 use crate::group::Group;
-use crate::scene::{BLUE, BLUE_FACE, INK, ORANGE, RED, Scene, View, WHITE};
 use crate::shapes::free_form;
+use shapeop_cli::scene::{BLUE, BLUE_FACE, INK, ORANGE, RED, Scene, View, WHITE};
 
 const ANGLE: f64 = -0.8;
 

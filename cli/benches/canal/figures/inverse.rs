@@ -20,8 +20,8 @@ use shapeop::mesh::fit::Plane;
 
 use super::{exact, met};
 use crate::group::Group;
-use crate::scene::{BLUE, INK, ORANGE, RED, Scene, View, WHITE};
 use crate::shapes::{Cyclide, c_guide, chord, ellipse, farthest, planar_curve};
+use shapeop_cli::scene::{BLUE, INK, ORANGE, RED, Scene, View, WHITE};
 
 pub fn figure3(folder: &Path) -> Result<Group> {
     let mut surface = SuperCanal::new(Cyclide::new()?.net([0.3, 2.0], [-0.7, 1.3], 9, 7)?, BaseKind::Canal);

@@ -13,8 +13,8 @@ use shapeop::mesh::Grid;
 
 use super::exact;
 use crate::group::Group;
-use crate::scene::{INK, Scene, View, WOOD};
 use crate::shapes::shell;
+use shapeop_cli::scene::{INK, Scene, View, WOOD};
 
 fn upward(axes: &[DVec3]) -> Vec<DVec3> {
     let is_down = axes.iter().map(|axis| axis.z).sum::<f64>() < 0.0;

@@ -18,9 +18,9 @@ use shapeop::mesh::curve::{Curve, Spline};
 
 use super::{exact, met};
 use crate::group::Group;
-use crate::scene::{BLUE, ORANGE, RED, Scene, View, WHITE};
 use crate::shapes::farthest;
 use crate::speed::{rough_strip, wave};
+use shapeop_cli::scene::{BLUE, ORANGE, RED, Scene, View, WHITE};
 
 pub fn figure5(folder: &Path) -> Result<Group> {
     let circle = |k: i32| {
