@@ -54,7 +54,7 @@ pub struct shapeop_ruled_report {
     pub reference_area: f64,
     /// The area of all trimmed strips.
     pub trimmed_area: f64,
-    /// The trimmed area over that of the mesh: 1 where strips cover it once.
+    /// The part of the mesh that some strip covers, 0 to 1, each of its spots counted once; known to about 0.001.
     pub coverage: f64,
     /// The largest gap between neighbours, in model units.
     pub largest_gap: f64,
@@ -66,6 +66,8 @@ pub struct shapeop_ruled_report {
     pub mean_kink: f64,
     /// The standard deviation of all widths over their mean.
     pub width_variation: f64,
+    /// The part of the mesh that strips cover again: once for each strip but the first.
+    pub overlap: f64,
 }
 
 /// What there is to say of one strip.
@@ -100,6 +102,8 @@ pub struct shapeop_ruled_strip_report {
     pub width_variation: f64,
     /// The greatest width over the least radius of curvature there.
     pub width_over_feature: f64,
+    /// That radius, in model units; 0 if nothing of the strip is left when it is trimmed.
+    pub feature_size: f64,
 }
 
 /// What there is to say of two neighbours.
@@ -261,7 +265,7 @@ pub unsafe extern "C" fn shapeop_ruledStripReport(
 ) -> shapeop_err {
     code(guard(design, |draft| {
         let all = &draft.report()?.strips;
-        let StripReport { deviation, area, trimmed_area, widths, width_over_feature, is_too_wide } =
+        let StripReport { deviation, area, trimmed_area, widths, width_over_feature, feature_size, is_too_wide } =
             all[io::index("strip", strip, all.len())?];
         let told = shapeop_ruled_strip_report {
             struct_size: 0,
@@ -278,9 +282,10 @@ pub unsafe extern "C" fn shapeop_ruledStripReport(
             greatest_width: widths.max,
             width_variation: widths.variation,
             width_over_feature,
+            feature_size,
         };
         let lengths = [deviation.max, deviation.rms, widths.min, widths.mean, widths.max];
-        let numbers = [&lengths[..], &[widths.variation, area, trimmed_area, width_over_feature]].concat();
+        let numbers = [&lengths[..], &[widths.variation, area, trimmed_area, width_over_feature, feature_size]].concat();
         // SAFETY: the caller vouches for `struct_size`, and then for so many bytes.
         unsafe { io::tell("report", report, &told, &numbers) }
     }))

@@ -20,7 +20,7 @@ use super::planar_boundaries::{PlanarOptions, Plane, planar_boundaries};
 use super::report::{Report, ReportOptions, report};
 use super::ruling_ends::RulingEnds;
 use super::start::{Rulings, Start, StartOptions, start};
-use super::terms::points_to_cover;
+use super::terms::{points_beside, points_to_cover};
 use super::{Boundary, Field, Joints, Strip, orientation, planks};
 use crate::error::{Error, Result, Status};
 use crate::linalg::gauss_newton;
@@ -50,6 +50,8 @@ pub struct Design {
     flips: Vec<[u32; 2]>,
     function: Option<LevelFunction>,
     boundaries: Boundaries,
+    /// Whether boundaries are on both sides of all of the surface.
+    is_whole: bool,
     /// The plane of each boundary, if they are plane sections.
     planes: Vec<Option<Plane>>,
     start: Option<Start>,
@@ -73,6 +75,7 @@ impl Design {
             flips: oriented.flips,
             function: None,
             boundaries: Boundaries::default(),
+            is_whole: false,
             planes: Vec::new(),
             start: None,
             strips: Vec::new(),
@@ -132,7 +135,7 @@ impl Design {
     pub fn orient(&mut self, family: usize, options: &orientation::Options) -> Result<()> {
         let oriented = self.directions.orient(&self.mesh, family, options)?;
         (self.field, self.flips) = (oriented.field, oriented.flips);
-        self.take(Boundaries::default(), Vec::new(), None);
+        self.take(Boundaries::default(), Vec::new(), None, false);
         Ok(())
     }
 
@@ -167,7 +170,7 @@ impl Design {
             let boundaries = level_boundaries(&self.mesh, &self.field, &found.values, levels, options)?;
             (found, boundaries)
         };
-        self.take(boundaries, Vec::new(), Some(function));
+        self.take(boundaries, Vec::new(), Some(function), options.overshoots);
         Ok(())
     }
 
@@ -187,7 +190,7 @@ impl Design {
         }
         let boundaries = level_boundaries(&self.mesh, &self.field, &function.values, levels, options)?;
         let function = self.function.take();
-        self.take(boundaries, Vec::new(), function);
+        self.take(boundaries, Vec::new(), function, options.overshoots);
         Ok(())
     }
 
@@ -197,7 +200,7 @@ impl Design {
     /// As [`planar_boundaries`].
     pub fn set_planar_boundaries(&mut self, planes: &[Plane], options: &PlanarOptions) -> Result<Vec<f64>> {
         let found = planar_boundaries(&self.mesh, &self.field, planes, options)?;
-        self.take(found.boundaries, found.planes, None);
+        self.take(found.boundaries, found.planes, None, options.boundaries.overshoots);
         Ok(found.angles_rad)
     }
 
@@ -207,7 +210,7 @@ impl Design {
     /// As [`great_circle_boundaries`].
     pub fn set_great_circle_boundaries(&mut self, axes: &[DVec3], options: &BoundaryOptions) -> Result<()> {
         let boundaries = great_circle_boundaries(&self.mesh, &self.field, axes, options)?;
-        self.take(boundaries, Vec::new(), None);
+        self.take(boundaries, Vec::new(), None, options.overshoots);
         Ok(())
     }
 
@@ -217,12 +220,19 @@ impl Design {
     /// As [`drawn_boundaries`].
     pub fn set_drawn_boundaries(&mut self, curves: &[Drawn], options: &BoundaryOptions) -> Result<()> {
         let boundaries = drawn_boundaries(&ReferenceMesh::new(&self.mesh), &self.field, curves, options)?;
-        self.take(boundaries, Vec::new(), None);
+        self.take(boundaries, Vec::new(), None, false);
         Ok(())
     }
 
-    fn take(&mut self, boundaries: Boundaries, planes: Vec<Option<Plane>>, function: Option<LevelFunction>) {
+    fn take(
+        &mut self,
+        boundaries: Boundaries,
+        planes: Vec<Option<Plane>>,
+        function: Option<LevelFunction>,
+        is_whole: bool,
+    ) {
         self.boundaries = boundaries;
+        self.is_whole = is_whole;
         self.planes = planes;
         self.function = function;
         self.start = None;
@@ -372,7 +382,12 @@ impl Design {
     ) -> Result<Optimised> {
         let mesh = ReferenceMesh::new(&self.mesh);
         let reference = surface.unwrap_or(&mesh);
-        let cover = points_to_cover(&self.mesh, MOST_COVERED);
+        // Where strips are to end before the rim, what is beyond must not draw them there.
+        let cover = if self.is_whole {
+            points_to_cover(&self.mesh, MOST_COVERED)
+        } else {
+            points_beside(&self.strips, &self.mesh, MOST_COVERED)
+        };
         let task = Task { strips: &self.strips, joints: &self.joints, reference, cover: &cover, conditions };
         let found = optimise(task, options, progress)?;
         self.strips.clone_from(&found.strips);

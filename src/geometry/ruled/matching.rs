@@ -172,7 +172,7 @@ impl<'a> Matching<'a> {
         from: SurfacePoint,
         others: &[Boundary],
         is_ahead: bool,
-    ) -> Option<std::result::Result<(usize, f64), f64>> {
+    ) -> Option<Result<(usize, f64), f64>> {
         let level = others[0].level;
         let sense = if is_ahead { Sense::Forward } else { Sense::Backward };
         let followed = self.rim.follow(from, sense, |at| {
@@ -253,7 +253,7 @@ impl Joined<'_> {
     fn add_moved(
         &mut self,
         range: std::ops::Range<usize>,
-        reached: &[std::result::Result<(usize, f64), f64>],
+        reached: &[Result<(usize, f64), f64>],
         way: impl Fn(usize) -> f64,
     ) {
         let directions = self.rim.directions(self.along);

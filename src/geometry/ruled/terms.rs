@@ -32,6 +32,10 @@ const NO_DIRECTION: f64 = 1e-10;
 /// is beyond the rim by its chords, counts as inside.
 const BEYOND: f64 = 1e-6;
 
+/// Nearer than this multiple of the diagonal a point of the reference surface is beside a strip: farther away the strip is beside
+/// another part of the surface.
+const BESIDE: f64 = 0.1;
+
 /// The step of a difference quotient along the boundary, as a multiple of the diagonal.
 const DIFFERENCE: f64 = 1e-6;
 
@@ -118,6 +122,18 @@ impl Parts {
 pub fn points_to_cover(mesh: &TriangleMesh, most: usize) -> Vec<DVec3> {
     let (points, count) = (mesh.points(), mesh.points().len().min(most));
     (0..count).map(|k| points[k * points.len() / count]).collect()
+}
+
+/// Those of [`points_to_cover`] that are beside one of some strips: strips that are to cover a part of the surface only are not
+/// drawn out of it by the rest.
+pub fn points_beside(strips: &[Strip], mesh: &TriangleMesh, most: usize) -> Vec<DVec3> {
+    let Some(search) = NearestStrip::new(strips) else { return Vec::new() };
+    let size = mesh.diagonal();
+    let is_beside = |point: &DVec3| {
+        let foot = search.nearest(*point);
+        foot.point.distance(*point) < BESIDE * size && foot.overhang(*point) <= BEYOND * size
+    };
+    points_to_cover(mesh, most).into_par_iter().filter(is_beside).collect()
 }
 
 /// What strips are to be near to.

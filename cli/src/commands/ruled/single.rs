@@ -8,20 +8,14 @@ use shapeop::geometry::ruled::conditions::Condition;
 use shapeop::geometry::ruled::optimise::{Task, optimise};
 use shapeop::geometry::ruled::single::axis;
 use shapeop::geometry::ruled::start::{Rulings, start};
-use shapeop::geometry::ruled::terms::points_to_cover;
+use shapeop::geometry::ruled::terms::points_beside;
 use shapeop::geometry::ruled::{Joints, Strip};
 use shapeop::mesh::reference::ReferenceMesh;
-use shapeop::mesh::{ReferenceSurface, TriangleMesh};
+use shapeop::mesh::TriangleMesh;
 
 use super::made::Made;
 use super::report::{BoundariesInReport, ConditionsInReport, OptimisationInReport, Seconds, StartInReport};
 use super::strips::{Job, MOST_COVERED, axis_of, end_rulings, optimisation_warnings, shown};
-
-/// A point is beside the strip while its nearest point is not beyond the boundary by more than this part of the diagonal.
-const BESIDE: f64 = 1e-6;
-
-/// A point beside a strip belongs to it while it is nearer than this part of the diagonal.
-const NEAR: f64 = 0.1;
 
 pub fn make(job: &Job<'_>) -> Result<Made> {
     let (args, asked) = (job.args, job.asked);
@@ -44,7 +38,7 @@ pub fn make(job: &Job<'_>) -> Result<Made> {
     let started = start(&boundaries, &is_closed, Rulings::Proportional, job.start_options()).map_err(in_curves)?;
     seconds.strips = clock.elapsed().as_secs_f64();
     let strip = &started.strips[0];
-    let cover = beside(&started.strips, &mesh)?;
+    let cover = points_beside(&started.strips, &mesh, MOST_COVERED);
     let (conditions, counts) = conditions(strip, job)?;
     let clock = Instant::now();
     let progress = job.phase("optimisation", asked.optimise.max_iterations);
@@ -90,18 +84,6 @@ pub fn make(job: &Job<'_>) -> Result<Made> {
         warnings,
         seconds,
     })
-}
-
-/// The points of the mesh whose nearest points are on one of the strips, not on its rim: those that they are to cover.
-pub fn beside(strips: &[Strip], mesh: &TriangleMesh) -> Result<Vec<DVec3>> {
-    let surfaces = strips.iter().map(Strip::surface).collect::<shapeop::error::Result<Vec<_>>>()?;
-    let is_beside = |point: &DVec3| {
-        surfaces.iter().any(|surface| {
-            let foot = surface.nearest(*point);
-            foot.overhang <= BESIDE * mesh.diagonal() && foot.point.distance(*point) < NEAR * mesh.diagonal()
-        })
-    };
-    Ok(points_to_cover(mesh, MOST_COVERED).into_iter().filter(is_beside).collect())
 }
 
 fn conditions(strip: &Strip, job: &Job<'_>) -> Result<(Vec<Condition>, ConditionsInReport)> {

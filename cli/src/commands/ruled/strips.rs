@@ -8,14 +8,12 @@ use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use shapeop::geometry::ruled::conditions::Condition;
 use shapeop::geometry::ruled::design::{Design, FieldOptions};
-use shapeop::geometry::ruled::optimise::{self, Optimised, Task};
+use shapeop::geometry::ruled::optimise::{self, Optimised};
 use shapeop::geometry::ruled::start::StartOptions;
-use shapeop::geometry::ruled::terms::points_to_cover;
 use shapeop::geometry::ruled::{Strip, asymptotic, orientation};
 use shapeop::mesh::Mesh;
 use shapeop::mesh::curve::End;
 use shapeop::mesh::file::read_source;
-use shapeop::mesh::reference::ReferenceMesh;
 
 use super::asked::Asked;
 use super::made::{self, Made};
@@ -155,17 +153,7 @@ fn along_field(job: &Job<'_>) -> Result<Made> {
 
     let clock = Instant::now();
     let progress = job.phase("optimisation", asked.optimise.max_iterations);
-    let reference = ReferenceMesh::new(design.mesh());
-    // Where strips are to end before the rim, what is beyond must not draw them there.
-    let is_whole = asked.kind != BoundaryKind::Drawn && !args.boundaries.no_overshoot;
-    let cover = if is_whole {
-        points_to_cover(design.mesh(), MOST_COVERED)
-    } else {
-        single::beside(design.strips(), design.mesh())?
-    };
-    let (strips, joints) = (design.strips(), design.joints());
-    let task = Task { strips, joints, reference: &reference, cover: &cover, conditions: &conditions };
-    let found = optimise::optimise(task, &asked.optimise, &mut |now| shown(now, &progress));
+    let found = design.optimise(None, &conditions, &asked.optimise, &mut |now| shown(now, &progress));
     progress.finish();
     let found = found.map_err(|error| job.in_conditions(error, &conditions))?;
     seconds.optimisation = clock.elapsed().as_secs_f64();

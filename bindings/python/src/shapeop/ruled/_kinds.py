@@ -209,6 +209,7 @@ class StripReport:
     greatest_width: float
     width_variation: float
     width_over_feature: float
+    feature_size: float
 
 
 @dataclass(frozen=True)
