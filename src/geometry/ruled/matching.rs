@@ -10,7 +10,8 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 
 use super::boundaries::{Boundaries, BoundaryOptions};
-use super::boundary::{Boundary, MARGIN, Rim};
+use super::boundary::Boundary;
+use super::rim::{MARGIN, Rim};
 use super::tracing::{End, Sense};
 use crate::mesh::SurfacePoint;
 
@@ -112,7 +113,6 @@ impl<'a> Matching<'a> {
     }
 
     /// The bridge ahead of a curve or behind it, and which curves it is over.
-    #[expect(clippy::type_complexity, reason = "a pair of what stands in the line above")]
     fn bridge_at(
         &self,
         (k, i): (usize, usize),
@@ -167,12 +167,7 @@ impl<'a> Matching<'a> {
     }
 
     /// Which of some curves the field leads to from a point, and how far that is; an error if it is the rim, none if it is neither.
-    fn reached(
-        &self,
-        from: SurfacePoint,
-        others: &[Boundary],
-        is_ahead: bool,
-    ) -> Option<std::result::Result<(usize, f64), f64>> {
+    fn reached(&self, from: SurfacePoint, others: &[Boundary], is_ahead: bool) -> Option<Result<(usize, f64), f64>> {
         let level = others[0].level;
         let sense = if is_ahead { Sense::Forward } else { Sense::Backward };
         let followed = self.rim.follow(from, sense, |at| {
@@ -253,7 +248,7 @@ impl Joined<'_> {
     fn add_moved(
         &mut self,
         range: std::ops::Range<usize>,
-        reached: &[std::result::Result<(usize, f64), f64>],
+        reached: &[Result<(usize, f64), f64>],
         way: impl Fn(usize) -> f64,
     ) {
         let directions = self.rim.directions(self.along);
