@@ -5,6 +5,7 @@
 //! curves, joined beyond the rim by the points of the long one moved along the field. The short curves are then the boundaries of
 //! strips of their own, which meet the bridge's. Around a saddle of the level function nothing like this is there, and no strip.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
@@ -74,7 +75,7 @@ impl<'a> Matching<'a> {
             ahead.into_iter().zip(&mut next[k - 1]).for_each(|(ahead, next)| next[0] = ahead);
             behind.into_iter().zip(&mut next[k]).for_each(|(behind, next)| next[1] = behind);
         }
-        let (mut numbers, mut bridges) = (std::collections::BTreeMap::new(), Vec::new());
+        let (mut numbers, mut bridges) = (BTreeMap::new(), Vec::new());
         for (first, group) in next.iter().enumerate() {
             for i in (0..group.len()).filter(|&i| !matches!(group[i][1], Next::Curve(_))) {
                 let (mut members, mut at) = (Vec::new(), (first, i));
