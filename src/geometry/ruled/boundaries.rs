@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::Field;
-use super::boundary::{Boundary, Rim};
+use super::boundary::Boundary;
 use super::matching::Matching;
+use super::rim::Rim;
 use crate::error::{Error, Result, Status, finite};
 use crate::mesh::grid::check_finite;
 use crate::mesh::level_curves::{LevelCurve, level_curves};

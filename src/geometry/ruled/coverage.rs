@@ -78,7 +78,7 @@ impl<'a> NearestStrip<'a> {
     /// squared distance from where the mesh is nearest, within the strip, as for any surface with two parameters.
     pub(super) fn nearest(&self, point: DVec3) -> StripFoot {
         let (near, piece) = self.closest.nearest_on_piece(point);
-        self.from(point, near, piece)
+        self.found(point, near, piece)
     }
 
     /// The strips whose meshes come nearer to a point than `distance`, ascending, each with the piece of its mesh that is nearest.
@@ -96,11 +96,11 @@ impl<'a> NearestStrip<'a> {
     }
 
     /// The nearest point of the strip of a piece of its mesh, found from there.
-    pub(super) fn from_piece(&self, point: DVec3, piece: usize) -> StripFoot {
-        self.from(point, point, piece)
+    pub(super) fn nearest_on_piece(&self, point: DVec3, piece: usize) -> StripFoot {
+        self.found(point, point, piece)
     }
 
-    fn from(&self, point: DVec3, near: DVec3, piece: usize) -> StripFoot {
+    fn found(&self, point: DVec3, near: DVec3, piece: usize) -> StripFoot {
         let (strip_index, column) = self.quads[piece / 2];
         let strip = &self.strips[strip_index as usize];
         let start = inside(strip, seed(strip, f64::from(column) / COLUMNS_PER_SPAN as f64, near));

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::Field;
 use super::boundaries::{Boundaries, BoundaryOptions, longest, ordered};
-use super::boundary::Rim;
+use super::rim::Rim;
 use crate::error::{Error, Result, Status};
 use crate::mesh::TriangleMesh;
 use crate::mesh::level_curves::{LevelCurve, level_curves_within};

@@ -5,12 +5,14 @@
 //! curves, joined beyond the rim by the points of the long one moved along the field. The short curves are then the boundaries of
 //! strips of their own, which meet the bridge's. Around a saddle of the level function nothing like this is there, and no strip.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
 
 use super::boundaries::{Boundaries, BoundaryOptions};
-use super::boundary::{Boundary, MARGIN, Rim};
+use super::boundary::Boundary;
+use super::rim::{MARGIN, Rim};
 use super::tracing::{End, Sense};
 use crate::mesh::SurfacePoint;
 
@@ -73,7 +75,7 @@ impl<'a> Matching<'a> {
             ahead.into_iter().zip(&mut next[k - 1]).for_each(|(ahead, next)| next[0] = ahead);
             behind.into_iter().zip(&mut next[k]).for_each(|(behind, next)| next[1] = behind);
         }
-        let (mut numbers, mut bridges) = (std::collections::BTreeMap::new(), Vec::new());
+        let (mut numbers, mut bridges) = (BTreeMap::new(), Vec::new());
         for (first, group) in next.iter().enumerate() {
             for i in (0..group.len()).filter(|&i| !matches!(group[i][1], Next::Curve(_))) {
                 let (mut members, mut at) = (Vec::new(), (first, i));
@@ -112,7 +114,6 @@ impl<'a> Matching<'a> {
     }
 
     /// The bridge ahead of a curve or behind it, and which curves it is over.
-    #[expect(clippy::type_complexity, reason = "a pair of what stands in the line above")]
     fn bridge_at(
         &self,
         (k, i): (usize, usize),
@@ -167,12 +168,7 @@ impl<'a> Matching<'a> {
     }
 
     /// Which of some curves the field leads to from a point, and how far that is; an error if it is the rim, none if it is neither.
-    fn reached(
-        &self,
-        from: SurfacePoint,
-        others: &[Boundary],
-        is_ahead: bool,
-    ) -> Option<Result<(usize, f64), f64>> {
+    fn reached(&self, from: SurfacePoint, others: &[Boundary], is_ahead: bool) -> Option<Result<(usize, f64), f64>> {
         let level = others[0].level;
         let sense = if is_ahead { Sense::Forward } else { Sense::Backward };
         let followed = self.rim.follow(from, sense, |at| {

@@ -41,6 +41,7 @@ pub mod planar_boundaries;
 pub mod planks;
 mod pull;
 pub mod report;
+mod rim;
 mod ruling_ends;
 pub mod rulings_problem;
 pub mod single;

@@ -13,10 +13,10 @@ use std::ops::ControlFlow;
 
 use super::Field;
 use super::boundaries::{Boundaries, BoundaryOptions, Dropped, Levels, level_boundaries, of_curve};
-use super::boundary::Rim;
 use super::cuts::{Split, corners, cuts};
 use super::level_function::{LevelFunction, LevelOptions, solve};
 use super::level_terms::Jumps;
+use super::rim::Rim;
 use super::stitching::{Stitched, stitched};
 use crate::error::{Error, Result, Status};
 use crate::linalg::gauss_newton::Progress;

@@ -7,7 +7,8 @@ use glam::DVec3;
 
 use super::Field;
 use super::boundaries::{Boundaries, BoundaryOptions, Dropped, longest, ordered};
-use super::boundary::{Boundary, Rim};
+use super::boundary::Boundary;
+use super::rim::Rim;
 use crate::error::{Error, Result, Status};
 use crate::mesh::TriangleMesh;
 use crate::mesh::level_curves::level_curves;

@@ -61,7 +61,7 @@ impl Counter<'_> {
         let reach = if count == 0 { NEAR * self.diagonal } else { distance + OVER * self.diagonal };
         for (strip, piece) in self.nearest.within(point, reach) {
             if strip != first.strip {
-                let other = self.nearest.from_piece(point, piece);
+                let other = self.nearest.nearest_on_piece(point, piece);
                 let is_near = other.point.distance(point) <= reach;
                 count += u32::from(is_near && other.overhang(point) <= self.tolerance);
             }
