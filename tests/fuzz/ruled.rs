@@ -16,7 +16,7 @@ use super::canal::number;
 use super::last_error;
 
 /// Sequences of the ordinary run.
-const SEQUENCES: u32 = 500;
+const SEQUENCES: u32 = 1_000;
 
 /// Points along a side of the mesh.
 const SIDE: c_int = 8;
