@@ -16,7 +16,7 @@ use super::canal::number;
 use super::last_error;
 
 /// Sequences of the ordinary run.
-const SEQUENCES: u32 = 500;
+const SEQUENCES: u32 = 1_000;
 
 /// Points along a side of the mesh.
 const SIDE: c_int = 8;
@@ -351,9 +351,9 @@ fn run(sequence: &[(usize, Call)], done: &mut Done) -> Result<(), TestCaseError>
     let design = saddle();
     check(!design.is_null(), &last_error(ptr::null_mut()))?;
     // Every other sequence begins with strips.
-    if sequence.len() % 2 == 0 {
+    if sequence.len().is_multiple_of(2) {
         make(design, &Call::LevelBoundaries(2, 0.0, vec![], [1.0, 0.0, 0.0, 0.0, 0.0, 1e-3]));
-        make(design, &Call::Start(5, c_int::from(sequence.len() % 4 == 0)));
+        make(design, &Call::Start(5, c_int::from(sequence.len().is_multiple_of(4))));
     }
     let stale = shapeop_ruledCopy(design);
     shapeop_ruledDelete(stale);
