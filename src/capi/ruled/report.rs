@@ -214,6 +214,7 @@ fn as_told(found: &Report) -> shapeop_ruled_report {
         largest_kink: found.max_kink_deg.to_radians(),
         mean_kink: found.mean_kink_deg.to_radians(),
         width_variation: found.width_variation,
+        overlap: found.overlap,
     }
 }
 
@@ -245,10 +246,10 @@ pub unsafe extern "C" fn shapeop_ruledReport(
         };
         let told = as_told(draft.judge(&options).map_err(named)?);
         let numbers = [told.largest_deviation, told.rms_deviation, told.largest_uncovered, told.rms_uncovered];
-        let areas = [told.reference_area, told.trimmed_area, told.coverage, told.width_variation];
+        let areas = [told.reference_area, told.trimmed_area, told.coverage, told.overlap, told.width_variation];
         let joints = [told.largest_gap, told.mean_gap, told.largest_kink, told.mean_kink];
         // SAFETY: the caller vouches for so many bytes.
-        unsafe { io::tell("report", report, &told, &[numbers, areas, joints].concat()) }
+        unsafe { io::tell("report", report, &told, &[&numbers[..], &areas, &joints].concat()) }
     }))
 }
 
@@ -285,7 +286,8 @@ pub unsafe extern "C" fn shapeop_ruledStripReport(
             feature_size,
         };
         let lengths = [deviation.max, deviation.rms, widths.min, widths.mean, widths.max];
-        let numbers = [&lengths[..], &[widths.variation, area, trimmed_area, width_over_feature, feature_size]].concat();
+        let numbers =
+            [&lengths[..], &[widths.variation, area, trimmed_area, width_over_feature, feature_size]].concat();
         // SAFETY: the caller vouches for `struct_size`, and then for so many bytes.
         unsafe { io::tell("report", report, &told, &numbers) }
     }))

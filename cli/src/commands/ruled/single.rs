@@ -10,8 +10,8 @@ use shapeop::geometry::ruled::single::axis;
 use shapeop::geometry::ruled::start::{Rulings, start};
 use shapeop::geometry::ruled::terms::points_beside;
 use shapeop::geometry::ruled::{Joints, Strip};
-use shapeop::mesh::reference::ReferenceMesh;
 use shapeop::mesh::TriangleMesh;
+use shapeop::mesh::reference::ReferenceMesh;
 
 use super::made::Made;
 use super::report::{BoundariesInReport, ConditionsInReport, OptimisationInReport, Seconds, StartInReport};

@@ -232,7 +232,8 @@ class Report:
     """What there is to say of strips.
 
     ``largest_deviation``: the largest distance of the strips from the mesh; ``largest_uncovered``: of a point of the
-    mesh from the nearest strip; ``coverage``: the area of trimmed strips over that of the mesh.
+    mesh from the nearest strip; ``coverage``: the part of the mesh that some strip covers;
+    ``overlap``: the part that strips cover again.
     """
 
     largest_deviation: float
@@ -242,6 +243,7 @@ class Report:
     reference_area: float
     trimmed_area: float
     coverage: float
+    overlap: float
     largest_gap: float
     mean_gap: float
     largest_kink: float
