@@ -1713,7 +1713,7 @@ typedef struct shapeop_ruled_report {
      */
     double trimmed_area;
     /**
-     * The trimmed area over that of the mesh: 1 where strips cover it once.
+     * The part of the mesh that some strip covers, 0 to 1, each of its spots counted once; known to about 0.001.
      */
     double coverage;
     /**
@@ -1736,6 +1736,10 @@ typedef struct shapeop_ruled_report {
      * The standard deviation of all widths over their mean.
      */
     double width_variation;
+    /**
+     * The part of the mesh that strips cover again: once for each strip but the first.
+     */
+    double overlap;
 } shapeop_ruled_report;
 
 /**
@@ -1798,6 +1802,10 @@ typedef struct shapeop_ruled_strip_report {
      * The greatest width over the least radius of curvature there.
      */
     double width_over_feature;
+    /**
+     * That radius, in model units; 0 if nothing of the strip is left when it is trimmed.
+     */
+    double feature_size;
 } shapeop_ruled_strip_report;
 
 /**

@@ -643,6 +643,7 @@ namespace ShapeOp
             internal double largest_kink;
             internal double mean_kink;
             internal double width_variation;
+            internal double overlap;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -662,6 +663,7 @@ namespace ShapeOp
             internal double greatest_width;
             internal double width_variation;
             internal double width_over_feature;
+            internal double feature_size;
         }
 
         [StructLayout(LayoutKind.Sequential)]

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use glam::DVec3;
+use shapeop::geometry::ruled::Strip;
 use shapeop::mesh::patterns::parametric_surface;
 use shapeop::mesh::reference::{ParametricSurface, SurfaceJet};
 use shapeop::mesh::{Grid, Mesh, surfaces};
@@ -130,4 +131,10 @@ pub fn noise(seed: u64) -> impl FnMut() -> f64 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
+}
+
+/// A strip as any surface with two parameters, so that distances from it are found without the search that strips have.
+pub fn surface_of(strip: &Strip) -> Result<ParametricSurface<impl Fn(f64, f64) -> SurfaceJet + Sync + '_>> {
+    let samples = [4 * strip.basis().spans() + 1, 3];
+    Ok(ParametricSurface::new([[0.0, strip.length_u()], [0.0, 1.0]], samples, |u, v| strip.at(u, v))?)
 }

@@ -484,6 +484,7 @@ class shapeop_ruled_report(ctypes.Structure):
         ("largest_kink", c_double),
         ("mean_kink", c_double),
         ("width_variation", c_double),
+        ("overlap", c_double),
     ]
 
 
@@ -503,6 +504,7 @@ class shapeop_ruled_strip_report(ctypes.Structure):
         ("greatest_width", c_double),
         ("width_variation", c_double),
         ("width_over_feature", c_double),
+        ("feature_size", c_double),
     ]
 
 

@@ -28,7 +28,7 @@ use super::drawing::{
 };
 use super::{make, with_levels};
 use crate::group::Group;
-use crate::shapes::{Shape, bent_conoid};
+use crate::shapes::{Shape, bent_conoid, surface_of};
 
 /// A catenoid beside its waist, where its spherical image does not fold.
 fn shell() -> Shape {
@@ -203,7 +203,7 @@ pub fn figure12(folder: &Path) -> Result<Group> {
         overlaid.push(outlines(over, strip, &trimmed).caption(words));
     }
     let (conoidal_strip, general_strip) = (std::slice::from_ref(conoidal.strip()), cut(&general)?);
-    let other = conoidal_strip[0].surface()?;
+    let other = surface_of(&conoidal_strip[0])?;
     let both = overlay(
         view("the two strips, laid over each other"),
         std::slice::from_ref(general.strip()),

@@ -20,7 +20,7 @@ use shapeop::mesh::{TriangleMesh, surfaces};
 
 use super::{about, bad_steps, is_refused, largest};
 use crate::group::Group;
-use crate::shapes::{Shape, Surface, conoid, free_form, noise, saddle};
+use crate::shapes::{Shape, Surface, conoid, free_form, noise, saddle, surface_of};
 
 /// Nothing but nearness: no term holds strips where they start.
 const BARE: Weights = Weights { proximity: 1.0, beyond: 1e-2, gap: 1.0, coverage: 1.0, thin_plate: 0.0, proximal: 0.0 };
@@ -55,7 +55,7 @@ pub fn distances(strips: &[Strip], surface: &dyn ReferenceSurface, points: &[DVe
         let feet = strip.mesh(61, 9)?.points.into_iter().map(|p| (p, surface.nearest(p)));
         there.extend(feet.filter(|(_, foot)| foot.overhang < 1e-9).map(|(p, foot)| p.distance(foot.point)));
     }
-    let surfaces = strips.iter().map(Strip::surface).collect::<shapeop::error::Result<Vec<_>>>()?;
+    let surfaces = strips.iter().map(surface_of).collect::<Result<Vec<_>>>()?;
     let nearest = |p: &DVec3| surfaces.iter().map(|s| s.nearest(*p).point.distance(*p)).fold(f64::INFINITY, f64::min);
     Ok([there, points.iter().map(nearest).collect()])
 }

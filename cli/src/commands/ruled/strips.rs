@@ -21,7 +21,7 @@ use super::places::{Places, in_options};
 use super::report::{ConditionsInReport, OptimisationInReport, Seconds, StartInReport};
 use super::{boundaries, field, pictures, single};
 use crate::Ending;
-use crate::args::ruled::{BoundaryKind, FieldArgs, RuledArgs};
+use crate::args::ruled::{FieldArgs, RuledArgs};
 use crate::curve_file::Curve;
 use crate::output::Output;
 use crate::progress::{Progress, catch_interrupts, is_interrupted};
