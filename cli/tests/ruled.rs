@@ -159,15 +159,16 @@ fn the_rulings_of_a_saddle_lie_on_it_and_the_report_is_true() {
     }
     let closest = ClosestPoints::of_triangles(&points, &triangles).unwrap();
     let apart = mesh.points.iter().map(|&p| closest.nearest(p).distance(p)).fold(0.0, f64::max);
-    let told = number(&report["measures"]["reference_to_strips"]["max"]);
-    assert!((apart - told).abs() < 1e-4 && told < CHORD, "{apart} {told}");
+    let farthest = number(&report["measures"]["reference_to_strips"]["max"]);
+    assert!((apart - farthest).abs() < 1e-4 && farthest < CHORD, "{apart} {farthest}");
     let trimmed = file::read(folder.path("saddle.ruled.obj")).unwrap();
-    let coverage = area(&trimmed) / area(&mesh);
     // Triangles between rulings that are twisted have a little more area.
-    assert!((coverage - number(&report["measures"]["coverage"])).abs() < 3e-3 && coverage > 0.995, "{coverage}");
+    let (ratio, told) = (area(&trimmed) / area(&mesh), |name: &str| number(&report["measures"][name]));
+    assert!((ratio - told("trimmed_area") / told("reference_area")).abs() < 5e-3, "{ratio}");
+    assert!(told("coverage") > 0.995 && told("coverage") <= 1.0 && told("overlap") < 5e-3);
     let diagonal = number(&report["mesh"]["diagonal"]);
     assert!((diagonal - 12_f64.sqrt()).abs() < 1e-9);
-    assert!((number(&report["relative"]["mesh_to_strips_max"]) - told / diagonal).abs() < 1e-15);
+    assert!((number(&report["relative"]["mesh_to_strips_max"]) - farthest / diagonal).abs() < 1e-15);
     // The surfaces are the strips: the same control points, in their order.
     let text = std::fs::read_to_string(folder.path("saddle.ruled.surfaces.obj")).unwrap();
     let vertices: Vec<DVec3> = text
@@ -446,7 +447,7 @@ fn strips_are_gone_on_with_by_the_engine() {
         lines.iter().map(off).fold(0.0, f64::max)
     };
     let straight = lines(&form);
-    assert!(straight.len() > 20 && bend(&solved, &straight) < 5e-3, "{} {}", straight.len(), bend(&solved, &straight));
+    assert!(straight.len() > 20 && bend(&solved, &straight) < 1e-2, "{} {}", straight.len(), bend(&solved, &straight));
     // Straight to the last digits while a corner is dragged.
     run(&folder, &[&roof, "--levels", "4", "--rulings", "9", "--problem", "--hard-rulings"]);
     let form = read_json(&folder.path("roof.ruled.problem.json"));

@@ -5,10 +5,12 @@ use std::ops::ControlFlow;
 use glam::{DVec2, DVec3};
 
 use super::Field;
+use super::asymptotic::{self, AsymptoticDirections};
 use super::boundaries::BoundaryOptions;
 use super::great_circles::{great_circle, great_circle_boundaries};
 use super::level_function::{LevelFunction, LevelOptions, LevelWeights, level_function};
 use super::level_terms::{Jumps, TermWeights, Terms};
+use super::orientation;
 use super::spherical_image::{Axis, ImageKind, SphericalImage};
 use crate::error::Status;
 use crate::linalg::gauss_newton::{self, Progress, Stop};
@@ -281,6 +283,14 @@ fn images_of_ruled_surfaces_collapse_and_others_may_fold() {
         let (mesh, field) = &conoid;
         let levels = solve(mesh, field, LevelWeights::CONOIDAL);
         assert!(levels.image.is_some_and(|image| image.kind == ImageKind::GreatCircle) && levels.stop.is_none());
+        // With the directions that are found from the mesh.
+        let found = AsymptoticDirections::new(mesh, &asymptotic::Options::default()).unwrap();
+        let kinds = [0, 1].map(|family| {
+            let oriented = found.orient(mesh, family, &orientation::Options::default()).unwrap();
+            *SphericalImage::new(mesh, &oriented.field).unwrap().report()
+        });
+        let conoidal = kinds.iter().find(|image| image.kind == ImageKind::GreatCircle).unwrap();
+        assert!(conoidal.axis.cross(DVec3::Z).length() < 1e-3);
         let saddle = surface(n, [[-1.0, 1.0]; 2], |x, y| DVec3::new(x, y, x * y), |_, y| DVec3::new(1.0, 0.0, y));
         assert_eq!(report(&saddle).kind, ImageKind::GreatCircle);
         assert!(report(&saddle).axis.cross(DVec3::Y).length() < 1e-9);

@@ -12,7 +12,8 @@
 //! 41 × 41, others above 0.09. If the curve is a great circle every strip is conoidal, whatever its boundaries.
 //!
 //! *Folds.* Where the image covers parts of the sphere twice, in opposite orientations, level curves that are geodesics on one sheet
-//! turn back at the fold. The paper leaves such cases out; they are found by the orientation of the triangles of the image.
+//! turn back at the fold. The paper leaves such cases out; they are found by the orientation of the triangles of the image. An image
+//! that is folded, but all of it near one great circle, is taken for that circle with noise: coarse meshes of conoids have such.
 
 use glam::DVec3;
 
@@ -126,8 +127,9 @@ impl SphericalImage {
         let is_collapsed = extent < COLLAPSED
             || total < NO_AREA * 4.0 * std::f64::consts::PI
             || unused_count as f64 > MOST_UNUSED * count as f64;
+        // Of a band as thin as that around a great circle a fold is noise.
         let kind = match (is_collapsed, folded > FOLDED) {
-            (true, _) if axis.flatness < FLAT => ImageKind::GreatCircle,
+            (true, _) | (_, true) if axis.flatness < FLAT => ImageKind::GreatCircle,
             (true, _) => ImageKind::Curve,
             (false, true) => ImageKind::Folded,
             (false, false) => ImageKind::Regular,

@@ -112,7 +112,9 @@ pub fn figure9(folder: &Path) -> Result<Group> {
         suggested = suggested.line(&on_surface(boundary), ORANGE, 2.8);
     }
     let diagonal = design.mesh().diagonal();
-    let words = format!("geodesic curvature × size {bent:.2},\nwith orthogonal boundaries {sideways:.2}");
+    let words = format!(
+        "geodesic curvature × size {after:.2} (orthogonal ones {before:.2}),\nof the optimised strips {bent:.2} ({sideways:.2})"
+    );
     let views = vec![
         suggested.caption(words),
         strips(view("(b) trimmed"), design.strips(), &made.trimmed, 2).caption(in_words(&made.report, diagonal)),
