@@ -25,7 +25,7 @@ use i_triangle::float::triangulatable::Triangulatable;
 use i_triangle::float::triangulation::Triangulation;
 use rayon::prelude::*;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::strip::{GAUSS, Strip};
 use crate::error::{Error, Result, Status};
@@ -44,6 +44,12 @@ const ON_COLUMN: f64 = 1e-8;
 /// The longest outline of a boundary loop, in units of the unit square: of a strip that lies beside the reference it is a few long.
 /// Longer ones jump to and fro, and cross themselves about as often as the square of their length.
 const LONGEST_OUTLINE: f64 = 200.0;
+
+/// Needles of what is kept, cut off where they are no wider than this many tolerances.
+const NEEDLE: f64 = 2.0;
+
+/// Rulings by which the size of a strip is told.
+const UNROLLED: usize = 33;
 
 /// Each face is judged at so many points.
 const JUDGES: usize = 9;
@@ -203,12 +209,57 @@ fn trim_one(strip: &Strip, reference: &ReferenceMesh<'_>, options: &TrimOptions)
         _ => FloatOverlay::<[f64; 2], i32>::from_subj(&kept).overlay(OverlayRule::Subject, FillRule::NonZero),
     };
     pieces.iter_mut().flatten().flatten().for_each(|at| *at = at.map(snapped));
+    let size = unrolled(strip);
+    for piece in &mut pieces {
+        piece.iter_mut().for_each(|contour| *contour = without_needles(contour, size, NEEDLE * tolerance));
+        piece.retain(|contour| contour.len() >= 3);
+    }
+    pieces.retain(|piece| !piece.is_empty());
     let (mut parameters, triangles) = triangulate(&pieces, options.columns_per_span * strip.basis().spans());
     let to_spans = |at: &mut [f64; 2]| at[0] *= last;
     pieces.iter_mut().flatten().flatten().for_each(to_spans);
     parameters.iter_mut().for_each(to_spans);
     let area = triangles.iter().map(|corners| area(strip, corners.map(|i| parameters[i as usize]))).sum();
     Ok(Trimmed { pieces, parameters, triangles, area })
+}
+
+/// The sides of a rectangle about as large as a strip: its length along the middle, and its mean width.
+fn unrolled(strip: &Strip) -> DVec2 {
+    let rulings = strip.rulings(UNROLLED);
+    let width = rulings.iter().map(|[a, b]| a.distance(*b)).sum::<f64>() / rulings.len() as f64;
+    let middles: Vec<DVec3> = rulings.iter().map(|[a, b]| a.midpoint(*b)).collect();
+    DVec2::new(middles.windows(2).map(|pair| pair[0].distance(pair[1])).sum(), width)
+}
+
+/// A closed polygon of the unit square without its needles, ways out and back that are nowhere wider than this where the square is a
+/// rectangle of this size: where a boundary of the strip leaves the reference, what is cut off and what is kept are the same within
+/// the tolerance for a while.
+fn without_needles(contour: &Contour, size: DVec2, width: f64) -> Contour {
+    let position = |at: [f64; 2]| size * DVec2::from(at);
+    let is_needle = |a: [f64; 2], tip: [f64; 2], b: [f64; 2]| {
+        let tip = position(tip);
+        let [a, b] = [position(a) - tip, position(b) - tip];
+        let [short, long] = if a.length_squared() < b.length_squared() { [a, b] } else { [b, a] };
+        short.dot(long) >= 0.0
+            && long.try_normalize().is_none_or(|along| short.reject_from_normalized(along).length() <= width)
+    };
+    let mut all = contour.clone();
+    // Once from the first corner on, and once from the middle on, as a needle may be where the polygon begins.
+    for _ in 0..2 {
+        let mut kept = Contour::with_capacity(all.len());
+        for &at in &all {
+            while let [.., before, tip] = kept[..]
+                && is_needle(before, tip, at)
+            {
+                kept.pop();
+            }
+            kept.push(at);
+        }
+        let middle = kept.len() / 2;
+        kept.rotate_left(middle);
+        all = kept;
+    }
+    all
 }
 
 /// The length of a closed polygon.

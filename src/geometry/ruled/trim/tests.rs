@@ -196,3 +196,18 @@ fn a_surface_without_boundary_trims_nothing_and_options_are_checked() {
     let error = trim(&[strip.clone(), point], &ReferenceMesh::new(&mesh), &TrimOptions::default()).unwrap_err();
     assert_eq!(error.place(), "strips[1]");
 }
+
+#[test]
+fn needles_are_cut_off_wherever_a_polygon_begins() {
+    let mut polygon: Contour =
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1.3, 1.0], [1.7, 1.0], [1.4, 1.0 + 1e-6], [1.0, 1.0 + 1e-6], [0.0, 1.0]]
+            .to_vec();
+    for _ in 0..polygon.len() {
+        polygon.rotate_left(1);
+        let mut left = without_needles(&polygon, DVec2::new(1.0, 2.0), 4e-6);
+        left.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        assert!(left.iter().all(|at| at[0] < 1.0 + 1e-9) && left.len() >= 4, "{left:?}");
+        // Wider ones are shapes.
+        assert_eq!(without_needles(&polygon, DVec2::new(1.0, 2.0), 1e-7).len(), polygon.len());
+    }
+}
