@@ -15,7 +15,13 @@
 //! dimension `N + 5`, or `N` if the snake is closed with at least 6 arcs; an open one that has to stay on a surface keeps 3 freedoms.
 
 mod arc;
+pub mod freedoms;
+pub mod functionals;
+pub mod projection;
 mod snake;
+#[cfg(test)]
+mod tests;
+pub mod velocity;
 
 pub use arc::Arc;
 pub use snake::{ArcShape, Distance, Pose, Snake};
