@@ -15,9 +15,12 @@
 //! dimension `N + 5`, or `N` if the snake is closed with at least 6 arcs; an open one that has to stay on a surface keeps 3 freedoms.
 
 mod arc;
+pub mod evolution;
 pub mod freedoms;
 pub mod functionals;
+mod motion;
 pub mod projection;
+pub mod rails;
 mod snake;
 #[cfg(test)]
 mod tests;

@@ -81,7 +81,7 @@ fn given_points_stay_and_conditions_hold() {
         let p = found.snake.control();
         assert_eq!((p[0], p[8]), (target[0], target[8]));
         assert!(found.snake.residual() < 1e-12 && (0.4 * p[3].z + 0.6 * p[4].z - height).abs() < 1e-12);
-        assert!(found.moved < 0.2 && found.is_nearest);
+        assert!(found.moved < 0.5 && found.is_nearest);
     }
 }
 
