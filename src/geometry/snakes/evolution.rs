@@ -437,7 +437,9 @@ impl Run<'_> {
                         self.step = if is_halved { h } else { (GROWTH * self.step).min(options.step) };
                         return Ok((next, h));
                     }
-                    (before, failed) = (part, None);
+                    before = part;
+                    // Of a rail that longer steps miss, the snake comes to the end, however slowly.
+                    failed = failed.filter(|failure| matches!(failure, Failure::Rail(..)));
                 }
                 Err(failure) => (before, failed) = (f64::INFINITY, Some(failure)),
             }

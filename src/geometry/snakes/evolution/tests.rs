@@ -1,11 +1,11 @@
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 use super::super::motion::Motion;
 use super::super::tests::{circular, incongruence, regular};
 use super::super::{ArcShape, Pose};
 use super::*;
-use crate::mesh::reference::{ParametricSurface, SurfaceJet};
-use crate::mesh::surfaces::{cylinder, graph, revolution, sphere, torus};
+use crate::mesh::reference::{ParametricSurface, SurfaceFoot, SurfaceJet};
+use crate::mesh::surfaces::{cylinder, graph, revolution, torus};
 
 type Formula = Box<dyn Fn(f64, f64) -> SurfaceJet + Sync>;
 
@@ -20,8 +20,18 @@ fn plane() -> ParametricSurface<Formula> {
     surface([[-50.0, 50.0]; 2], graph(|_, _| [0.0; 6]))
 }
 
-fn unit_sphere() -> ParametricSurface<Formula> {
-    surface([[-PI, PI], [-FRAC_PI_2 + 0.01, FRAC_PI_2 - 0.01]], sphere(1.0))
+/// The unit sphere about the origin, poles and all.
+struct Ball;
+
+impl ReferenceSurface for Ball {
+    fn nearest(&self, point: DVec3) -> SurfaceFoot {
+        let normal = point.normalize();
+        SurfaceFoot { point: normal, normal, overhang: 0.0 }
+    }
+
+    fn diagonal(&self) -> f64 {
+        12.0_f64.sqrt()
+    }
 }
 
 pub fn run(task: &Task<'_>, options: &Options) -> Evolution {
@@ -43,8 +53,7 @@ pub fn shape_error(start: &Snake, now: &Snake) -> f64 {
 /// Part of the small circle of the unit sphere at the height 0.6, of arcs of 0.25 radians.
 fn small_circle(count: usize) -> Snake {
     let flat = circular(count, 0.25);
-    let snake = Snake::new(flat.control().iter().map(|p| 0.8 * p + 0.6 * DVec3::Z).collect(), false, None).unwrap();
-    snake
+    Snake::new(flat.control().iter().map(|p| 0.8 * p + 0.6 * DVec3::Z).collect(), false, None).unwrap()
 }
 
 fn screw(count: usize, slope: f64) -> Snake {
@@ -123,7 +132,7 @@ fn on_a_cylinder_a_screw_moves_into_itself() {
 
 #[test]
 fn on_a_sphere_a_small_circle_turns_rigidly() {
-    let sphere = unit_sphere();
+    let sphere = Ball;
     let snake = small_circle(8);
     for is_second_order in [false, true] {
         let options = Options { step: 0.02, max_steps: 40, is_second_order, ..Options::default() };
@@ -173,7 +182,7 @@ fn orders_are_two_and_three() {
 
 #[test]
 fn accelerations_do_not_grow_as_steps_shrink() {
-    let (sphere, snake) = (unit_sphere(), small_circle(8));
+    let (sphere, snake) = (Ball, small_circle(8));
     let task = on(&snake, &sphere);
     let options = Options { is_second_order: true, ..Options::default() };
     let motion = Motion::new(&task, &options, &[]);
@@ -269,3 +278,5 @@ fn what_cannot_move_is_refused() {
     let ring = regular(5);
     assert_eq!(refused(&Task::new(&ring), &plain), "snake");
 }
+
+mod rail_tests;
