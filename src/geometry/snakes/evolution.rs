@@ -437,14 +437,16 @@ impl Run<'_> {
                         self.step = if is_halved { h } else { (GROWTH * self.step).min(options.step) };
                         return Ok((next, h));
                     }
-                    before = part;
-                    // Of a rail that longer steps miss, the snake comes to the end, however slowly.
-                    failed = failed.filter(|failure| matches!(failure, Failure::Rail(..)));
+                    (before, failed) = (part, None);
                 }
                 Err(failure) => (before, failed) = (f64::INFINITY, Some(failure)),
             }
             h *= 0.5;
             is_halved = true;
+        }
+        // Where a step of the length asked for misses a rail, that is why ever shorter ones were needed.
+        if let Err(failure @ Failure::Rail(..)) = self.motion.step(&self.state, rates, options.step.min(left)) {
+            failed = Some(failure);
         }
         Err(failed.map_or(Ok(Stop::Stalled), stopped))
     }
