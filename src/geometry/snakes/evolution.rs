@@ -279,7 +279,7 @@ pub fn evolve(
         velocity_residual: 0.0,
         snake: task.snake.clone(),
     };
-    let mut run = Run { motion, state, time: 0.0, step: options.step, frames: vec![start], cycle: None };
+    let mut run = Run { motion, state, time: 0.0, step: options.step, idle: 0.0, frames: vec![start], cycle: None };
     let stop = run.run(progress)?;
     Ok(Evolution { frames: run.frames, stop })
 }
@@ -341,6 +341,8 @@ struct Run<'a> {
     state: State,
     time: f64,
     step: f64,
+    /// The part of the last steps that the projection took back however short they were.
+    idle: f64,
     frames: Vec<Frame>,
     cycle: Option<Start>,
 }
@@ -424,22 +426,28 @@ impl Run<'_> {
         let left = self.time_left(rates).map(|(_, left)| left).fold(f64::INFINITY, f64::min);
         let mut h = self.step.min(left);
         let least = (options.least_step * options.step).min(h);
-        let mut before = f64::INFINITY;
+        let mut before: Option<(Step, f64)> = None;
         let mut failed = None;
         let mut is_halved = false;
         while h >= least {
             match self.motion.step(&self.state, rates, h) {
-                Ok(next) => {
+                Ok(next) if turns(&self.state.snake, &next.state.snake) < FRAC_PI_2 => {
                     let part = next.taken_back / (h * fastest);
-                    let is_idle = part > NO_GAIN * before && part <= MOST_TAKEN_BACK;
-                    if (part <= TAKEN_BACK || is_idle) && turns(&self.state.snake, &next.state.snake) < FRAC_PI_2 {
+                    if part <= TAKEN_BACK.max(NO_GAIN.recip() * self.idle) {
                         // A step cut by the end of a rail says nothing of the next.
                         self.step = if is_halved { h } else { (GROWTH * self.step).min(options.step) };
                         return Ok((next, h));
                     }
-                    (before, failed) = (part, None);
+                    match before {
+                        Some((longer, of_longer)) if part > NO_GAIN * of_longer && of_longer <= MOST_TAKEN_BACK => {
+                            (self.idle, self.step) = (of_longer, 2.0 * h);
+                            return Ok((longer, 2.0 * h));
+                        }
+                        _ => (before, failed) = (Some((next, part)), None),
+                    }
                 }
-                Err(failure) => (before, failed) = (f64::INFINITY, Some(failure)),
+                Ok(_) => (before, failed) = (None, None),
+                Err(failure) => (before, failed) = (None, Some(failure)),
             }
             h *= 0.5;
             is_halved = true;

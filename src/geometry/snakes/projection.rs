@@ -7,9 +7,11 @@
 //! on the function `½ ‖x − y‖² + Σ λ c` and its multipliers, with the second derivatives of the distances, without which it does not
 //! converge for targets that are not very near.
 //!
-//! Points that are given (fixed, or on a rail) are substituted throughout and do not move. Heights over the surface count as
-//! residuals of the second phase too: an open snake has three freedoms more than it then has conditions. A closed one has none,
-//! and where its heights contradict the distances, they are left as the first phase found them.
+//! Points that are given (fixed, or on a rail) are substituted throughout and do not move. Near a surface, steps that keep distances
+//! lower the squares of heights and of the way in between (else what the first phase leaves of distances would be paid for in
+//! heights), and then heights count as residuals of the second phase too: an open snake has three freedoms more than it then has
+//! conditions. Where they contradict the distances, as those of closed snakes do in general, or where a long way would be needed
+//! for a small gain, as with many short arcs, they are left as they were.
 
 use glam::DVec3;
 
@@ -35,8 +37,19 @@ const MOST_NEWTON_STEPS: usize = 10;
 /// Damped steps at most where they have not: residuals then fall by a factor, not with squares.
 const MOST_DAMPED_STEPS: usize = 200;
 
-/// The first damping of these, relative to the residual.
+/// The first damping of these and the last, relative to the residual.
 const FIRST_DAMPING: f64 = 1.0;
+const MOST_DAMPING: f64 = 1e12;
+
+/// Steps at most that lower heights and keep distances, and the part of the size below which a step is the last.
+const MOST_SETTLING_STEPS: usize = 6;
+const LAST_SETTLING_STEP: f64 = 1e-9;
+
+/// Heights are taken to round-off where that moves no point farther than the target is, times this.
+const LONGEST_WAY: f64 = 2.0;
+
+/// How often a step of Newton's method is halved where it does not lower the sum of the squared residuals.
+const MOST_HALVINGS: usize = 6;
 
 /// A residual above this part of the size is no round-off of a vanishing derivative but a target too far away.
 const FAR: f64 = 1e-6;
@@ -163,8 +176,12 @@ pub fn project(task: &Task<'_>, options: &Options) -> Result<Projected> {
     let (mut points, iterations) = soft::minimise(&residuals, &start, options)?;
     let mut steps = 0;
     if task.surface.is_some() && options.surface_weight > 0.0 {
+        let farthest =
+            |from: &[DVec3], to: &[DVec3]| from.iter().zip(to).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        points = residuals.settle(points, options);
         let polished = residuals.polish(&points, true, MOST_NEWTON_STEPS);
-        if polished.residual <= MET * residuals.size {
+        let limit = LONGEST_WAY * farthest(&points, task.target).max(MET * residuals.size);
+        if polished.residual <= MET * residuals.size && farthest(&polished.points, &points) <= limit {
             points = polished.points;
         }
         steps += polished.steps;
@@ -326,35 +343,88 @@ impl<'a> Residuals<'a> {
         Some(saddle)
     }
 
-    /// Newton's steps, shortest each, and where they do not lower the residuals any more, damped ones.
+    /// The sum of the squares of all residuals.
+    fn squares(&self, points: &[DVec3], on_surface: bool) -> f64 {
+        let distances = self.distances.iter().map(|distance| Self::distance_residual(points, distance).powi(2));
+        let rows = self.task.conditions.iter().map(|row| row.residual(points).powi(2));
+        let heights = self.task.surface.iter().filter(|_| on_surface).flat_map(|surface| {
+            let off = |(i, wanted): (usize, &f64)| (height(surface.reference, points[i]) - wanted).powi(2);
+            surface.heights.iter().enumerate().filter(|(i, _)| !self.is_fixed[*i]).map(off)
+        });
+        distances.chain(rows).sum::<f64>() + heights.sum::<f64>()
+    }
+
+    /// Newton's steps, shortest each, or parts of them; where none lowers the squares of the residuals, damped ones.
     fn polish(&self, start: &[DVec3], on_surface: bool, most: usize) -> Polished {
         let mut at = Polished { points: start.to_vec(), residual: self.largest(start, on_surface), steps: 0 };
-        let mut damping = None;
+        let mut squares = self.squares(start, on_surface);
+        let mut damping: Option<f64> = None;
         while at.residual > MET * self.size && at.steps < most {
             let Some(saddle) = self.linearised(&at.points, on_surface) else { break };
-            let relaxation = damping.map(|damping: f64| damping * at.residual / self.size);
-            let found = match relaxation {
+            let found = match damping {
                 None => saddle.solve(&self.positions),
-                Some(relaxation) => saddle.solve_relaxed(&self.positions, relaxation.max(f64::MIN_POSITIVE)),
+                Some(damping) => {
+                    let relaxation = damping * squares.sqrt() / self.size;
+                    saddle.solve_relaxed(&self.positions, relaxation.max(f64::MIN_POSITIVE))
+                }
             };
             let Ok(found) = found else { break };
-            let step = found.x.chunks_exact(3).map(DVec3::from_slice);
-            let points: Vec<DVec3> = at.points.iter().zip(step).map(|(p, d)| p + d).collect();
-            let residual = self.largest(&points, on_surface);
             at.steps += 1;
-            if residual < at.residual {
-                damping = damping.map(|damping| 0.2 * damping);
-                (at.points, at.residual) = (points, residual);
-                if at.steps == MOST_NEWTON_STEPS {
-                    damping = damping.or(Some(FIRST_DAMPING));
+            let moved = |part: f64| -> Vec<DVec3> {
+                let step = found.x.chunks_exact(3).map(DVec3::from_slice);
+                at.points.iter().zip(step).map(|(p, d)| p + part * d).collect()
+            };
+            let halvings = if damping.is_some() { 0 } else { MOST_HALVINGS };
+            let lower = (0..=halvings).map(|k| moved(0.5_f64.powi(k as i32))).find_map(|points| {
+                let next = self.squares(&points, on_surface);
+                (next < squares).then_some((points, next))
+            });
+            match lower {
+                Some((points, next)) => {
+                    let is_slow = next > 0.9 * squares;
+                    (at.residual, squares) = (self.largest(&points, on_surface), next);
+                    at.points = points;
+                    damping = match damping {
+                        None => is_slow.then_some(FIRST_DAMPING),
+                        Some(damping) => Some(0.2 * damping),
+                    };
                 }
-            } else if damping.is_some_and(|damping| damping > 1e12) {
-                break;
-            } else {
-                damping = Some(damping.map_or(FIRST_DAMPING, |damping| 10.0 * damping));
+                None if damping.is_some_and(|damping| damping > MOST_DAMPING) => break,
+                None => damping = Some(damping.map_or(FIRST_DAMPING, |damping| 10.0 * damping)),
             }
         }
         at
+    }
+
+    /// Steps `d` that keep distances and conditions and lower `w Σ (height − target height)² + µ ‖x − y‖²`, as long as the distances
+    /// allow it.
+    fn settle(&self, mut points: Vec<DVec3>, options: &Options) -> Vec<DVec3> {
+        let Some(surface) = &self.task.surface else { return points };
+        for _ in 0..MOST_SETTLING_STEPS {
+            let Some(mut saddle) = self.linearised(&points, false) else { break };
+            // The squares of `linearised` have the weight 1 already: of what is added that is the part of µ.
+            let scale = 1.0 / options.mu;
+            for (i, wanted) in surface.heights.iter().enumerate().filter(|(i, _)| !self.is_fixed[*i]) {
+                let pull = self.task.target[i] - points[i];
+                (0..3).for_each(|k| saddle.add_first((3 * i + k) as u32, pull[k]));
+                let foot = surface.reference.nearest(points[i]);
+                let row = Row { terms: vec![(i as u32, foot.normal)], right: 0.0, weight: 1.0 };
+                let right = wanted - foot.normal.dot(points[i] - foot.point);
+                saddle.add_square(&entries(&row), right, options.surface_weight * scale);
+            }
+            let Ok(found) = saddle.solve(&self.positions) else { break };
+            let steps = || found.x.chunks_exact(3).map(DVec3::from_slice);
+            let next: Vec<DVec3> = points.iter().zip(steps()).map(|(p, d)| p + d).collect();
+            // Too long a step leaves the linear range.
+            if self.residual(&next) > FAR * self.size && self.residual(&next) > self.residual(&points) {
+                break;
+            }
+            points = next;
+            if steps().map(|d| d.length()).fold(0.0, f64::max) <= LAST_SETTLING_STEP * self.size {
+                break;
+            }
+        }
+        points
     }
 
     /// Why the residuals stay.
