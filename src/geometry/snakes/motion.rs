@@ -19,6 +19,9 @@ const CONTRADICTING: f64 = 1e-8;
 /// What distances three apart count where they contradict other conditions.
 const STRONG: f64 = 1e3;
 
+/// Heights are taken to round-off where that takes no more than this part of a step back.
+const REACH: f64 = 0.5;
+
 /// How often at most a snake is projected again since it met its rails elsewhere, and the distance, in parts of its length, at
 /// which it meets them.
 const MOST_ROUNDS: usize = 8;
@@ -319,6 +322,9 @@ impl<'a> Motion<'a> {
         let moved = state.snake.moved(target.clone())?;
         let mut near = moved;
         let mut round = 0;
+        let way = |(a, b): (&DVec3, &DVec3)| a.distance(*b);
+        let longest = state.snake.control().iter().zip(&target).map(way).fold(0.0, f64::max);
+        let reach = (REACH * longest).max(f64::MIN_POSITIVE);
         let (projected, incongruence) = loop {
             let mut conditions = Vec::new();
             for (k, rail) in self.task.rails.iter().enumerate().filter(|(_, rail)| rail.point().is_none()) {
@@ -329,7 +335,7 @@ impl<'a> Motion<'a> {
                 let [point, ..] = arc_point(&near, rails[k].arc as usize, rails[k].angle_rad);
                 conditions.push(point.row(direction, direction.dot(on)));
             }
-            let (found, incongruence) = self.project(&target, &conditions)?;
+            let (found, incongruence) = self.project(&target, &conditions, reach)?;
             round += 1;
             let misses = conditions.iter().map(|_| ()).count() > 0
                 && self.misses(&found.snake, &mut rails)? > MEETS * self.length;
@@ -355,8 +361,8 @@ impl<'a> Motion<'a> {
     }
 
     /// The projection, with the distances three apart if they can be kept, and by how much those are off.
-    fn project(&self, target: &[DVec3], conditions: &[Row]) -> Result<(Projected, f64)> {
-        let surface = self.task.surface.map(|reference| Surface { reference, heights: &self.heights });
+    fn project(&self, target: &[DVec3], conditions: &[Row], reach: f64) -> Result<(Projected, f64)> {
+        let surface = self.task.surface.map(|reference| Surface { reference, heights: &self.heights, reach });
         let options = projection::Options {
             is_exact: self.options.projection.is_exact && surface.is_none(),
             ..self.options.projection

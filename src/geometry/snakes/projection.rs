@@ -45,8 +45,8 @@ const MOST_DAMPING: f64 = 1e12;
 const MOST_SETTLING_STEPS: usize = 6;
 const LAST_SETTLING_STEP: f64 = 1e-9;
 
-/// Heights are taken to round-off where that moves no point farther than the target is, times this.
-const LONGEST_WAY: f64 = 2.0;
+/// Newton's method converges where each step lowers the sum of squares at least by this factor.
+const CONVERGING: f64 = 1.0 / 16.0;
 
 /// How often a step of Newton's method is halved where it does not lower the sum of the squared residuals.
 const MOST_HALVINGS: usize = 6;
@@ -105,6 +105,8 @@ pub struct Surface<'a> {
     pub reference: &'a dyn ReferenceSurface,
     /// The signed distance of each control point along the normal.
     pub heights: &'a [f64],
+    /// Heights are taken to round-off where that moves no point farther than this, in model units; above 0, may be infinite.
+    pub reach: f64,
 }
 
 impl std::fmt::Debug for Surface<'_> {
@@ -166,28 +168,27 @@ pub struct Projected {
 ///
 /// # Errors
 /// Options out of range (`options.FIELD`); a target or heights that are not one for each control point, or not finite (`target`,
-/// `target[i]`, `surface.heights`); a fixed point, distance or condition of a control point that does not exist (`fixed[k]`,
+/// `target[i]`, `surface.heights`, `surface.reach`); a fixed point, distance or condition of a control point that does not exist (`fixed[k]`,
 /// `distances[k]`, `conditions[k]`). Status `Singular`: the derivatives lose rank and no step lowers the residuals. Status
 /// `NoSolution`: they stay, as the target is too far away or conditions contradict the distances (`target`).
 pub fn project(task: &Task<'_>, options: &Options) -> Result<Projected> {
     options.check()?;
     let residuals = Residuals::new(task, options)?;
-    let start: Vec<DVec3> = task.target.to_vec();
-    let (mut points, iterations) = soft::minimise(&residuals, &start, options)?;
-    let mut steps = 0;
-    if task.surface.is_some() && options.surface_weight > 0.0 {
-        let farthest =
-            |from: &[DVec3], to: &[DVec3]| from.iter().zip(to).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    let (mut points, mut iterations, mut steps) = (task.target.to_vec(), 0, 0);
+    let surface = task.surface.filter(|_| options.surface_weight > 0.0);
+    // Along a smooth surface Newton's method does it all, for what is near enough.
+    let at_heights = |from: &[DVec3]| surface.and_then(|surface| residuals.polish_heights(from, surface.reach));
+    if let Some(polished) = at_heights(task.target) {
+        (points, steps) = (polished.points, polished.steps);
+    } else {
+        (points, iterations) = soft::minimise(&residuals, &points, options)?;
         points = residuals.settle(points, options);
-        let polished = residuals.polish(&points, true, MOST_NEWTON_STEPS);
-        let limit = LONGEST_WAY * farthest(&points, task.target).max(MET * residuals.size);
-        if polished.residual <= MET * residuals.size && farthest(&polished.points, &points) <= limit {
-            points = polished.points;
+        if let Some(polished) = at_heights(&points) {
+            (points, steps) = (polished.points, polished.steps);
         }
-        steps += polished.steps;
     }
     let most = MOST_NEWTON_STEPS + MOST_DAMPED_STEPS;
-    let mut polished = residuals.polish(&points, false, most);
+    let mut polished = residuals.polish(&points, most);
     steps += polished.steps;
     if !(polished.residual <= MET * residuals.size) {
         return Err(residuals.stalled(&polished));
@@ -195,7 +196,7 @@ pub fn project(task: &Task<'_>, options: &Options) -> Result<Projected> {
     let mut is_nearest = true;
     if options.is_exact {
         (points, is_nearest) = residuals.nearest(polished.points);
-        polished = residuals.polish(&points, false, most);
+        polished = residuals.polish(&points, most);
         if !(polished.residual <= MET * residuals.size) {
             return Err(residuals.stalled(&polished));
         }
@@ -264,6 +265,10 @@ impl<'a> Residuals<'a> {
             if let Some(i) = surface.heights.iter().position(|height| !height.is_finite()) {
                 let reason = format!("expected a finite number, found {}", surface.heights[i]);
                 return Err(Error::new(Status::InvalidValue, reason).at(format!("surface.heights[{i}]")));
+            }
+            if !(surface.reach > 0.0) {
+                let reason = format!("expected a number above 0, found {}", surface.reach);
+                return Err(Error::new(Status::InvalidValue, reason).at("surface.reach"));
             }
             if options.is_exact {
                 let reason = "expected no surface where the nearest position is asked for";
@@ -355,12 +360,12 @@ impl<'a> Residuals<'a> {
     }
 
     /// Newton's steps, shortest each, or parts of them; where none lowers the squares of the residuals, damped ones.
-    fn polish(&self, start: &[DVec3], on_surface: bool, most: usize) -> Polished {
-        let mut at = Polished { points: start.to_vec(), residual: self.largest(start, on_surface), steps: 0 };
-        let mut squares = self.squares(start, on_surface);
+    fn polish(&self, start: &[DVec3], most: usize) -> Polished {
+        let mut at = Polished { points: start.to_vec(), residual: self.residual(start), steps: 0 };
+        let mut squares = self.squares(start, false);
         let mut damping: Option<f64> = None;
         while at.residual > MET * self.size && at.steps < most {
-            let Some(saddle) = self.linearised(&at.points, on_surface) else { break };
+            let Some(saddle) = self.linearised(&at.points, false) else { break };
             let found = match damping {
                 None => saddle.solve(&self.positions),
                 Some(damping) => {
@@ -376,13 +381,13 @@ impl<'a> Residuals<'a> {
             };
             let halvings = if damping.is_some() { 0 } else { MOST_HALVINGS };
             let lower = (0..=halvings).map(|k| moved(0.5_f64.powi(k as i32))).find_map(|points| {
-                let next = self.squares(&points, on_surface);
+                let next = self.squares(&points, false);
                 (next < squares).then_some((points, next))
             });
             match lower {
                 Some((points, next)) => {
                     let is_slow = next > 0.9 * squares;
-                    (at.residual, squares) = (self.largest(&points, on_surface), next);
+                    (at.residual, squares) = (self.residual(&points), next);
                     at.points = points;
                     damping = match damping {
                         None => is_slow.then_some(FIRST_DAMPING),
@@ -396,10 +401,31 @@ impl<'a> Residuals<'a> {
         at
     }
 
+    /// Newton's method for heights and all, where it converges as it should, without going far.
+    fn polish_heights(&self, start: &[DVec3], reach: f64) -> Option<Polished> {
+        let (mut points, mut squares) = (start.to_vec(), self.squares(start, true));
+        for steps in 0..=MOST_NEWTON_STEPS {
+            let residual = self.largest(&points, true);
+            if residual <= MET * self.size {
+                return Some(Polished { points, residual, steps });
+            }
+            let found = self.linearised(&points, true)?.solve(&self.positions).ok()?;
+            points.iter_mut().zip(found.x.chunks_exact(3)).for_each(|(p, d)| *p += DVec3::from_slice(d));
+            let next = self.squares(&points, true);
+            let is_near = points.iter().zip(start).all(|(a, b)| a.distance(*b) <= reach);
+            let is_round_off = next.sqrt() <= MET * self.size;
+            if !(is_near && (next <= CONVERGING * squares || is_round_off)) {
+                return None;
+            }
+            squares = next;
+        }
+        None
+    }
+
     /// Steps `d` that keep distances and conditions and lower `w Σ (height − target height)² + µ ‖x − y‖²`, as long as the distances
     /// allow it.
     fn settle(&self, mut points: Vec<DVec3>, options: &Options) -> Vec<DVec3> {
-        let Some(surface) = &self.task.surface else { return points };
+        let Some(surface) = self.task.surface.filter(|_| options.surface_weight > 0.0) else { return points };
         for _ in 0..MOST_SETTLING_STEPS {
             let Some(mut saddle) = self.linearised(&points, false) else { break };
             // The squares of `linearised` have the weight 1 already: of what is added that is the part of µ.

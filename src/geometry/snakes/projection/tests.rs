@@ -95,7 +95,10 @@ fn heights_are_kept_to_round_off() {
     let snake = Snake::new(points, false, None).unwrap();
     let heights: Vec<f64> = snake.control().iter().map(|p| p.length() - 1.0).collect();
     let target = noisy(&snake, 0.02, 6);
-    let task = Task { surface: Some(Surface { reference: &surface, heights: &heights }), ..Task::new(&snake, &target) };
+    let task = Task {
+        surface: Some(Surface { reference: &surface, heights: &heights, reach: f64::INFINITY }),
+        ..Task::new(&snake, &target)
+    };
     let found = project(&task, &Options::default()).unwrap();
     assert!(found.snake.residual() < 1e-12 && found.height_residual < 1e-12, "{found:?}");
     assert!(found.snake.control().iter().zip(&heights).all(|(p, h)| (p.length() - 1.0 - h).abs() < 1e-12));
