@@ -1,6 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
-use super::super::motion::Motion;
+use super::super::motion::{Motion, State};
 use super::super::tests::{circular, incongruence, regular};
 use super::super::{ArcShape, Pose};
 use super::*;
