@@ -202,16 +202,16 @@ pub(super) fn start(snake: &Snake, rails: &[Rail<'_>]) -> Result<Vec<OnRail>> {
                 }
             },
         };
-        if let Rail::Driven { speed, .. } = rail {
-            if !speed.is_finite() {
-                return error(Status::InvalidValue, ".speed", format!("expected a finite number, found {speed}"));
-            }
+        if let Rail::Driven { speed, .. } = rail
+            && !speed.is_finite()
+        {
+            return error(Status::InvalidValue, ".speed", format!("expected a finite number, found {speed}"));
         }
-        if let Rail::Following { leader, .. } = *rail {
-            if leader >= k || !matches!(rails[leader], Rail::Driven { .. }) {
-                let reason = format!("expected the index of a driven rail before it, found {leader}");
-                return error(Status::IndexOutOfRange, ".leader", reason);
-            }
+        if let Rail::Following { leader, .. } = *rail
+            && (leader >= k || !matches!(rails[leader], Rail::Driven { .. }))
+        {
+            let reason = format!("expected the index of a driven rail before it, found {leader}");
+            return error(Status::IndexOutOfRange, ".leader", reason);
         }
         let distance = rail.curve().point(parameter).distance(on);
         if !(distance <= ON_SNAKE * size) {

@@ -27,7 +27,7 @@ pub fn regular(count: usize) -> Snake {
         let (sine, cosine) = (2.0 * half * i as f64).sin_cos();
         DVec3::new(cosine, sine, 0.0) / half.cos()
     };
-    Snake::new((0..count).map(at).collect(), true, (count % 2 == 0).then_some(half.tan())).unwrap()
+    Snake::new((0..count).map(at).collect(), true, count.is_multiple_of(2).then_some(half.tan())).unwrap()
 }
 
 /// The arcs of [`regular`] with control points moved by up to `amount` in each coordinate, so that they do not keep their distances.

@@ -44,7 +44,10 @@ fn on<'a>(snake: &'a Snake, surface: &'a dyn ReferenceSurface) -> Task<'a> {
 
 /// By how much radii and arc lengths read from the control points differ from those of the start.
 pub fn shape_error(start: &Snake, now: &Snake) -> f64 {
-    let first = start.is_closed().then(|| start.shapes()[0].tangent_length()).filter(|_| start.shapes().len() % 2 == 0);
+    let first = start
+        .is_closed()
+        .then(|| start.shapes()[0].tangent_length())
+        .filter(|_| start.shapes().len().is_multiple_of(2));
     let read = Snake::new(now.control().to_vec(), now.is_closed(), first).unwrap();
     let pairs = read.shapes().iter().zip(start.shapes());
     pairs.map(|(a, b)| (a.radius - b.radius).abs().max((a.length - b.length).abs())).fold(0.0, f64::max)
