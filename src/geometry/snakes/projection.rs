@@ -2,7 +2,7 @@
 //!
 //! *First* (Bartoň et al. 2013, section 3.2) the damped Gauss–Newton method lowers `Σ (|p_i − p_j| − d_ij)² + µ ‖x − y‖²`, with lengths
 //! in units of the snake's size; near a surface, squares of `height − target height` are added. What it finds keeps distances to
-//! some 1e-4 only. *Then* Newton's method with the shortest steps, `JᵀJ`-free: `d` is the shortest vector with `J d = −residual`, takes
+//! some 1e-4 only. *Then* Newton's method with the shortest steps, where `d` is the shortest vector with `J d = −residual`, takes
 //! the residuals to round-off, without going far. On request the result is the nearest position, not only near it: Newton's method
 //! on the function `½ ‖x − y‖² + Σ λ c` and its multipliers, with the second derivatives of the distances, without which it does not
 //! converge for targets that are not very near.
@@ -187,7 +187,7 @@ struct Residuals<'a> {
     distances: Vec<Distance>,
     is_fixed: Vec<bool>,
     positions: Vec<u32>,
-    /// The mean of the distances that neighbours keep times their number, so the length of the control polygon: the unit.
+    /// The length of the control polygon: the unit.
     size: f64,
 }
 

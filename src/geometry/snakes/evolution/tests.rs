@@ -4,7 +4,8 @@ use super::super::motion::{Motion, State};
 use super::super::tests::{circular, incongruence, regular};
 use super::super::{ArcShape, Pose};
 use super::*;
-use crate::mesh::reference::{ParametricSurface, SurfaceFoot, SurfaceJet};
+use crate::mesh::TriangleMesh;
+use crate::mesh::reference::{ParametricSurface, ReferenceMesh, SurfaceFoot, SurfaceJet};
 use crate::mesh::surfaces::{cylinder, graph, revolution, torus};
 
 type Formula = Box<dyn Fn(f64, f64) -> SurfaceJet + Sync>;
@@ -280,6 +281,44 @@ fn what_cannot_move_is_refused() {
     assert_eq!(refused(&task, &Options { projection: mu, ..plain }), "options.projection.mu");
     let ring = regular(5);
     assert_eq!(refused(&Task::new(&ring), &plain), "snake");
+}
+
+#[test]
+fn sizes_do_not_matter() {
+    let of = |scale: f64| {
+        let torus = surface([[-PI, PI], [-PI, PI]], torus(2.0 * scale, 0.7 * scale));
+        let snake = screw(6, 0.4);
+        let control = snake.control().iter().map(|p| scale * (0.9 * *p + 1.9 * DVec3::X)).collect();
+        let snake = Snake::new(control, false, None).unwrap();
+        let options = Options { step: 0.01, max_steps: 10, ..Options::default() };
+        run(&Task { speeds: &[scale], ..on(&snake, &torus) }, &options)
+    };
+    let unit = of(1.0);
+    assert_eq!(unit.frames.len(), 11);
+    for scale in [1e-3, 1e3] {
+        let found = of(scale);
+        assert_eq!((found.frames.len(), found.stop), (11, Stop::Steps));
+        for (a, b) in found.last().snake.control().iter().zip(unit.last().snake.control()) {
+            assert!((a / scale).distance(*b) < 1e-7, "{}", (a / scale).distance(*b));
+        }
+    }
+}
+
+#[test]
+fn meshes_guide_as_the_surfaces_that_they_are_of() {
+    let cylinder = surface([[-PI, PI], [-2.0, 5.0]], cylinder(1.0));
+    let mesh = TriangleMesh::new(&cylinder.mesh(181, 61).unwrap()).unwrap();
+    let mesh = ReferenceMesh::new(&mesh);
+    // Its chords are within 1.6e-4 of the cylinder.
+    let ring = regular(10);
+    let found = run(&on(&ring, &mesh), &Options { max_steps: 30, ..Options::default() });
+    assert_eq!(found.stop, Stop::Steps);
+    for frame in &found.frames {
+        let off = frame.snake.sample(4).iter().map(|p| (p.x.hypot(p.y) - 1.0).abs()).fold(0.0, f64::max);
+        assert!(off < 2e-3 && frame.snake.residual() < 1e-12 && frame.deviation < 2e-3, "{off} {}", frame.deviation);
+    }
+    let risen = found.last().snake.contacts().iter().map(|c| c.z.abs()).fold(f64::INFINITY, f64::min);
+    assert!(risen > 1.3, "{risen}");
 }
 
 mod rail_tests;
