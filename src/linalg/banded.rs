@@ -18,8 +18,8 @@ pub struct BandedLu {
 }
 
 impl BandedLu {
-    /// Factorises the matrix of `dimension` rows with these entries `(row, column, value)`; repeated ones are added. `None` if a pivot
-    /// vanishes or is not finite: the matrix is singular.
+    /// Factorises the matrix of `dimension` rows with these entries `(row, column, value)`; repeated ones are added. `None` if a
+    /// pivot vanishes or is not finite: the matrix is singular.
     pub fn new(dimension: usize, entries: &[(u32, u32, f64)]) -> Option<Self> {
         let reach = |of: fn(u32, u32) -> u32| entries.iter().map(|&(i, j, _)| of(i, j) as usize).max().unwrap_or(0);
         let (below, above) = (reach(|i, j| i.saturating_sub(j)), reach(|i, j| j.saturating_sub(i)));

@@ -112,8 +112,8 @@ impl SaddlePoint {
         }
     }
 
-    /// Finds the minimum of the function with `Σ (Σ coefficient · unknown − right)² / 2 relaxation` of all conditions added in their
-    /// place. `relaxation` is above 0.
+    /// Finds the minimum of the function with `Σ (Σ coefficient · unknown − right)² / 2 relaxation` of all conditions added in
+    /// their place. `relaxation` is above 0.
     ///
     /// # Errors
     /// As [`SaddlePoint::solve`].

@@ -1,5 +1,5 @@
-//! How a snake moves: step by step along admissible velocities, each step projected back (Bartoň et al. 2013, sections 3.1, 3.2, 3.4
-//! and 4.1).
+//! How a snake moves: step by step along admissible velocities, each step projected back (Bartoň et al. 2013, sections 3.1, 3.2,
+//! 3.4 and 4.1).
 //!
 //! Near a surface, control points keep their signed heights of the start: they are off the surface where arcs are on it. How far
 //! the arcs are from the surface is measured at contact points and at the middles of arcs.
@@ -102,12 +102,12 @@ pub struct Options {
     pub is_second_order: bool,
     /// What accelerations along the surface count against those across it; above 0.
     pub alpha: f64,
-    /// Whether distances of control points three apart are kept, so that the snake moves rigidly. Where that contradicts rails, they
-    /// are kept as well as they can be, and the frames say how well.
+    /// Whether distances of control points three apart are kept, so that the snake moves rigidly. Where that contradicts rails,
+    /// they are kept as well as they can be, and the frames say how well.
     pub keeps_torsions: bool,
     /// Whether to stop when the snake is back where it started.
     pub stops_at_cycle: bool,
-    /// How steps are projected.
+    /// How steps are projected; to the nearest position only without a surface.
     pub projection: projection::Options,
 }
 
@@ -244,8 +244,8 @@ pub struct Progress<'a> {
 /// # Errors
 /// Options out of range (`options.FIELD`); not one speed for all or for each control point, or one that is not finite (`speeds`,
 /// `speeds[i]`); sideways without a surface, or no direction (`direction`); a point that does not exist or is given twice
-/// (`fixed[k]`, `rails[k].point`); a rail that does not begin on the snake (`rails[k]`); wishes that are none (`wishes[k]`); a closed
-/// snake of fewer than 6 arcs, which is rigid (`snake`). Status `Degenerate`: a gliding rail along the snake (`rails[k]`).
+/// (`fixed[k]`, `rails[k].point`); a rail that does not begin on the snake (`rails[k]`); wishes that are none (`wishes[k]`); a
+/// closed snake of fewer than 6 arcs, which is rigid (`snake`). Status `Degenerate`: a gliding rail along the snake (`rails[k]`).
 pub fn evolve(
     task: &Task<'_>,
     options: &Options,

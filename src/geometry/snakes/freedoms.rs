@@ -32,8 +32,8 @@ pub fn freedoms(snake: &Snake) -> Result<Freedoms> {
     rank(snake, &[])
 }
 
-/// The freedoms of a snake whose control points may move only at right angles to `normals`, one of length above 0 for each: 3 for an
-/// open snake, to first order (Bartoň et al. 2013, section 2).
+/// The freedoms of a snake whose control points may move only at right angles to `normals`, one of length above 0 for each: 3 for
+/// an open snake, to first order (Bartoň et al. 2013, section 2).
 ///
 /// # Errors
 /// As [`freedoms`]; another number of normals, or one without a direction (`normals`, `normals[i]`).

@@ -101,8 +101,8 @@ pub fn three_apart(snake: &Snake) -> Vec<super::Distance> {
     (0..pairs).map(pair).collect()
 }
 
-/// Velocities that turn arcs about contacts as little as possible: `(p_i − p_{i+3}) · (ṗ_i − ṗ_{i+3})` is to be 0 (Bartoň et al. 2013,
-/// section 3.1). We divide by the mean of those distances: the result is a speed, whose square compares with the others.
+/// Velocities that turn arcs about contacts as little as possible: `(p_i − p_{i+3}) · (ṗ_i − ṗ_{i+3})` is to be 0 (Bartoň et al.
+/// 2013, section 3.1). We divide by the mean of those distances: the result is a speed, whose square compares with the others.
 pub fn rotation_minimising(snake: &Snake, weight: f64) -> Vec<Row> {
     let (pairs, control) = (three_apart(snake), snake.control());
     let mean = pairs.iter().map(|pair| pair.length).sum::<f64>() / pairs.len().max(1) as f64;

@@ -223,10 +223,10 @@ impl<'a> Motion<'a> {
         admissible(snake, Kept { distances: &own, rights: &right[..own.len()] }, conditions, wishes)
     }
 
-    /// The accelerations for a step of time `h` (Bartoň et al. 2013, equation 9), whose targets are the feet of where the velocities
-    /// lead to. As control points are off the surface, accelerations towards the feet themselves grow like `h⁻²`; we take points
-    /// above the feet, at the heights that the control points have and that the velocities change at their rates: so accelerations
-    /// make up for curvature, and are bounded. What is along the surface is to be small.
+    /// The accelerations for a step of time `h` (Bartoň et al. 2013, equation 9), whose targets are the feet of where the
+    /// velocities lead to. As control points are off the surface, accelerations towards the feet themselves grow like `h⁻²`; we
+    /// take points above the feet, at the heights that the control points have and that the velocities change at their rates: so
+    /// accelerations make up for curvature, and are bounded. What is along the surface is to be small.
     pub fn acceleration(&self, state: &State, rates: &Rates, h: f64) -> std::result::Result<Vec<DVec3>, Failure> {
         let snake = &state.snake;
         let velocities = &rates.velocity.vectors;
@@ -235,7 +235,8 @@ impl<'a> Motion<'a> {
         self.task.fixed.iter().for_each(|&i| conditions.extend(near_vector(i as usize, DVec3::ZERO, 1.0)));
         for (k, rail) in self.task.rails.iter().enumerate() {
             match rail.point() {
-                // A follower's parameter is solved for after the step; its own acceleration along the rail is left to the conditions.
+                // A follower's parameter is solved for after the step; its own acceleration along the rail is left to the
+                // conditions.
                 Some(point) => {
                     let wanted = runs[k].1[1];
                     if matches!(rail, Rail::Driven { .. }) {

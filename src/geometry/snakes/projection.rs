@@ -1,17 +1,17 @@
 //! The nearest position that a snake can have.
 //!
-//! *First* (Bartoň et al. 2013, section 3.2) the damped Gauss–Newton method lowers `Σ (|p_i − p_j| − d_ij)² + µ ‖x − y‖²`, with lengths
-//! in units of the snake's size; near a surface, squares of `height − target height` are added. What it finds keeps distances to
-//! some 1e-4 only. *Then* Newton's method with the shortest steps, where `d` is the shortest vector with `J d = −residual`, takes
-//! the residuals to round-off, without going far. On request the result is the nearest position, not only near it: Newton's method
-//! on the function `½ ‖x − y‖² + Σ λ c` and its multipliers, with the second derivatives of the distances, without which it does not
-//! converge for targets that are not very near.
+//! *First* (Bartoň et al. 2013, section 3.2) the damped Gauss–Newton method lowers `Σ (|p_i − p_j| − d_ij)² + µ ‖x − y‖²`, with
+//! lengths in units of the snake's size; near a surface, squares of `height − target height` are added. What it finds keeps
+//! distances to some 1e-4 only. *Then* Newton's method with the shortest steps, where `d` is the shortest vector with `J d =
+//! −residual`, takes the residuals to round-off, without going far. On request the result is the nearest position, not only near
+//! it: Newton's method on the function `½ ‖x − y‖² + Σ λ c` and its multipliers, with the second derivatives of the distances,
+//! without which it does not converge for targets that are not very near.
 //!
-//! Points that are given (fixed, or on a rail) are substituted throughout and do not move. Near a surface, steps that keep distances
-//! lower the squares of heights and of the way in between (else what the first phase leaves of distances would be paid for in
-//! heights), and then heights count as residuals of the second phase too: an open snake has three freedoms more than it then has
-//! conditions. Where they contradict the distances, as those of closed snakes do in general, or where a long way would be needed
-//! for a small gain, as with many short arcs, they are left as they were.
+//! Points that are given (fixed, or on a rail) are substituted throughout and do not move. Near a surface, steps that keep
+//! distances lower the squares of heights and of the way in between (else what the first phase leaves of distances would be paid
+//! for in heights), and then heights count as residuals of the second phase too: an open snake has three freedoms more than it
+//! then has conditions. Where they contradict the distances, as those of closed snakes do in general, or where a long way would be
+//! needed for a small gain, as with many short arcs, they are left as they were.
 
 use glam::DVec3;
 
@@ -34,8 +34,8 @@ pub(super) const MET: f64 = 1e-13;
 /// How to project.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// `µ`, what the squared way counts against squared errors of distances; above 0. Higher values than the default leave errors that
-    /// Newton's method has to take elsewhere.
+    /// `µ`, what the squared way counts against squared errors of distances; above 0. Higher values than the default leave errors
+    /// that Newton's method has to take elsewhere.
     pub mu: f64,
     /// What squared errors of heights count against squared errors of distances, 0 or more.
     pub surface_weight: f64,
@@ -136,9 +136,9 @@ pub struct Projected {
 ///
 /// # Errors
 /// Options out of range (`options.FIELD`); a target or heights that are not one for each control point, or not finite (`target`,
-/// `target[i]`, `surface.heights`, `surface.reach`); a fixed point, distance or condition of a control point that does not exist (`fixed[k]`,
-/// `distances[k]`, `conditions[k]`). Status `Singular`: the derivatives lose rank and no step lowers the residuals. Status
-/// `NoSolution`: they stay, as the target is too far away or conditions contradict the distances (`target`).
+/// `target[i]`, `surface.heights`, `surface.reach`); a fixed point, distance or condition of a control point that does not exist
+/// (`fixed[k]`, `distances[k]`, `conditions[k]`). Status `Singular`: the derivatives lose rank and no step lowers the residuals.
+/// Status `NoSolution`: they stay, as the target is too far away or conditions contradict the distances (`target`).
 pub fn project(task: &Task<'_>, options: &Options) -> Result<Projected> {
     options.check()?;
     let residuals = Residuals::new(task, options)?;

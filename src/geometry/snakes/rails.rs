@@ -1,9 +1,10 @@
 //! Rails: curves that guide a snake.
 //!
-//! A control point is *driven* along a rail at a given speed; one that *follows* another stays at its distance from it, on a rail of
-//! its own, and a snake whose ends run so can move rigidly. A snake *glides* on a rail that it meets in some point of an arc, which
-//! needs no point of the snake to run along it. There the velocity of the arc's point is in the plane of the tangents of snake and
-//! rail (Bartoň et al. 2013, example 4.1), so that they still meet: with the part `φ` of the arc and the rail's parameter `τ`,
+//! A control point is *driven* along a rail at a given speed; one that *follows* another stays at its distance from it, on a rail
+//! of its own, and a snake whose ends run so can move rigidly. A snake *glides* on a rail that it meets in some point of an arc,
+//! which needs no point of the snake to run along it. There the velocity of the arc's point is in the plane of the tangents of
+//! snake and rail (Bartoň et al. 2013, example 4.1), so that they still meet: with the part `φ` of the arc and the rail's
+//! parameter `τ`,
 //!
 //! ```text
 //! m(φ, t) = γ(τ):   ṁ + m' φ̇ = γ' τ̇,   and once more   m̈ + 2 ṁ' φ̇ + m'' φ̇² + m' φ̈ = γ'' τ̇² + γ' τ̈
@@ -138,8 +139,8 @@ impl Combination {
 
 /// The point of arc `j` at an angle from its start, and its first two derivatives by the angle.
 ///
-/// With unit vectors `u`, `w` from the vertex back and on, `t = −u` and `n = (w + cos θ u) / sin θ` are the tangent and the normal at
-/// the start `p + d u`, and the point is `p + d u + r sin φ t + r (1 − cos φ) n`.
+/// With unit vectors `u`, `w` from the vertex back and on, `t = −u` and `n = (w + cos θ u) / sin θ` are the tangent and the normal
+/// at the start `p + d u`, and the point is `p + d u + r sin φ t + r (1 − cos φ) n`.
 pub(super) fn arc_point(snake: &Snake, j: usize, angle: f64) -> [Combination; 3] {
     let (shapes, count) = (snake.shapes(), snake.control().len());
     let tangent = |j: usize| shapes.get(j).map_or(0.0, super::ArcShape::tangent_length);
@@ -167,8 +168,8 @@ pub(super) fn arc_point(snake: &Snake, j: usize, angle: f64) -> [Combination; 3]
 /// Where a snake is on its rails at the start.
 ///
 /// # Errors
-/// Indices that do not exist, a parameter or speed that is not finite, a leader that is no driven rail before it, or a rail that does
-/// not start on the snake (`rails[k]`, `rails[k].FIELD`). Status `Degenerate`: a gliding rail along the snake (`rails[k]`).
+/// Indices that do not exist, a parameter or speed that is not finite, a leader that is no driven rail before it, or a rail that
+/// does not start on the snake (`rails[k]`, `rails[k].FIELD`). Status `Degenerate`: a gliding rail along the snake (`rails[k]`).
 pub(super) fn start(snake: &Snake, rails: &[Rail<'_>]) -> Result<Vec<OnRail>> {
     let size = snake.length();
     let contacts = snake.contacts();
@@ -340,8 +341,8 @@ pub(super) fn at_distance(
 /// How fast the follower's parameter grows: with `a` from leader to follower, `a · (γ' τ̇ − v) = 0`.
 ///
 /// Where the rail is at right angles to `a` this says nothing, and the distance stays to second order where
-/// `‖γ' τ̇ − v‖² + a · (γ'' τ̇² − w) = 0`, a quadratic equation, with the leader's velocity `v` and acceleration `w`. For motions that
-/// keep the distance all along, its roots are one.
+/// `‖γ' τ̇ − v‖² + a · (γ'' τ̇² − w) = 0`, a quadratic equation, with the leader's velocity `v` and acceleration `w`. For motions
+/// that keep the distance all along, its roots are one.
 pub(super) fn follower_rate(apart: DVec3, first: DVec3, second: DVec3, leader: [DVec3; 2]) -> f64 {
     let [v, w] = leader;
     let cosine = apart.normalize_or_zero().dot(first.normalize_or_zero());

@@ -30,7 +30,8 @@ pub fn regular(count: usize) -> Snake {
     Snake::new((0..count).map(at).collect(), true, count.is_multiple_of(2).then_some(half.tan())).unwrap()
 }
 
-/// The arcs of [`regular`] with control points moved by up to `amount` in each coordinate, so that they do not keep their distances.
+/// The arcs of [`regular`] with control points moved by up to `amount` in each coordinate, so that they do not keep their
+/// distances.
 pub fn shaken(count: usize, amount: f64, seed: u64) -> Snake {
     let mut random = Random(seed);
     let snake = regular(count);

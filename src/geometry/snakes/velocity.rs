@@ -1,9 +1,10 @@
 //! Velocities and accelerations that a snake's arcs allow.
 //!
-//! A motion keeps the [distances](Snake::distances) of control points where `(p_i − p_j) · (ṗ_i − ṗ_j) = 0` for them all (Bartoň et al.
-//! 2013, equation 4). Differentiated once more, `(p_i − p_j) · (p̈_i − p̈_j) + ‖ṗ_i − ṗ_j‖² = 0`: the paper's equation (8) has a
-//! velocity in place of the first factor, with which distances are kept one order less well. Of the velocities that meet these
-//! conditions we take those for which a sum of squares is least ([`super::functionals`] has its rows), found with multipliers.
+//! A motion keeps the [distances](Snake::distances) of control points where `(p_i − p_j) · (ṗ_i − ṗ_j) = 0` for them all (Bartoň
+//! et al. 2013, equation 4). Differentiated once more, `(p_i − p_j) · (p̈_i − p̈_j) + ‖ṗ_i − ṗ_j‖² = 0`: the paper's equation (8)
+//! has a velocity in place of the first factor, with which distances are kept one order less well. Of the velocities that meet
+//! these conditions we take those for which a sum of squares is least ([`super::functionals`] has its rows), found with
+//! multipliers.
 
 use glam::DVec3;
 
@@ -31,7 +32,8 @@ pub struct Admissible {
 ///
 /// # Errors
 /// A row of a control point that does not exist, numbers that are not finite, or a negative weight (`conditions[k]`, `wishes[k]`).
-/// Status `Degenerate`: control points coincide (`snake`). Status `Singular`: round-off does not determine the velocities (`wishes`).
+/// Status `Degenerate`: control points coincide (`snake`). Status `Singular`: round-off does not determine the velocities
+/// (`wishes`).
 pub fn velocity(snake: &Snake, conditions: &[Row], wishes: &[Row]) -> Result<Admissible> {
     let distances = snake.distances();
     let rights = vec![0.0; distances.len()];
@@ -68,8 +70,8 @@ pub(super) fn centripetal(snake: &Snake, distances: &[Distance], velocities: &[D
     Ok(distances.iter().map(right).collect())
 }
 
-/// Where unknowns are in the order of elimination, so that neighbours are near each other. Around a closed snake those are taken from
-/// both sides in turn.
+/// Where unknowns are in the order of elimination, so that neighbours are near each other. Around a closed snake those are taken
+/// from both sides in turn.
 pub(super) fn positions(snake: &Snake) -> Vec<u32> {
     let count = snake.control().len();
     let place = |i: usize| match (snake.is_closed(), 2 * i < count) {

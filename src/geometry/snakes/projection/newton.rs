@@ -140,8 +140,8 @@ impl Residuals<'_> {
         None
     }
 
-    /// Steps `d` that keep distances and conditions and lower `w Σ (height − target height)² + µ ‖x − y‖²`, as long as the distances
-    /// allow it.
+    /// Steps `d` that keep distances and conditions and lower `w Σ (height − target height)² + µ ‖x − y‖²`, as long as the
+    /// distances allow it.
     pub(super) fn settle(&self, mut points: Vec<DVec3>, options: &Options) -> Vec<DVec3> {
         let Some(surface) = self.task.surface.filter(|_| options.surface_weight > 0.0) else { return points };
         for _ in 0..MOST_SETTLING_STEPS {
