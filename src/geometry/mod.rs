@@ -5,3 +5,4 @@ pub mod circle;
 #[cfg(test)]
 mod random;
 pub mod ruled;
+pub mod snakes;

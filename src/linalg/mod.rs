@@ -1,5 +1,6 @@
 //! Linear algebra: the sparse system of the global step, and closed forms in two and three dimensions.
 
+pub mod banded;
 pub mod bfgs;
 pub mod cholesky;
 pub mod conjugate_gradients;
@@ -15,6 +16,7 @@ mod nested_dissection;
 mod panels;
 pub mod positive_part;
 mod rows;
+pub mod saddle;
 pub mod simd;
 pub mod small;
 pub mod symmetric;
