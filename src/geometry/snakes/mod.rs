@@ -15,6 +15,10 @@
 //! dimension `N + 5`, or `N` if the snake is closed with at least 6 arcs; an open one that has to stay on a surface keeps 3 freedoms.
 
 mod arc;
+pub mod curvature_curve;
+mod curve_step;
+mod face_patch;
+pub mod mesh_curve;
 mod snake;
 
 pub use arc::Arc;
