@@ -18,7 +18,10 @@ mod arc;
 pub mod curvature_curve;
 mod curve_step;
 mod face_patch;
+pub mod fit;
 pub mod mesh_curve;
+mod polish;
+mod samples;
 mod snake;
 
 pub use arc::Arc;
