@@ -11,7 +11,8 @@
 //! is minimised, `c_jk` being the points of the curve that belong to arc `j`, `o_j` its centre and `n_j` its unit normal. The paper has
 //! the first term of `F_prox` alone, which measures the distance to a sphere: the second makes it that to the circle, to first order.
 //! The last two keep arcs from gliding along a curve of constant curvature, which changes nothing else. Then `ν` is lowered, so that
-//! distances are met ever better, and in the end to round-off. With the lengths `a`, `b` that the edges at `p_j` are to have, all is polynomial in the control points:
+//! distances are met ever better, and in the end to round-off. With the lengths `a`, `b` that the edges at `p_j` are to have, `o` and
+//! `n` are polynomials in the control points:
 //!
 //! ```text
 //! o = p + (r / sin θ) ((p₋ − p)/a + (p₊ − p)/b),   n = (p − p₋) × (p₊ − p) / (a b sin θ).
@@ -27,13 +28,17 @@ use super::{ArcShape, Distance, Snake};
 use crate::error::{Error, Result, Status};
 use crate::linalg::gauss_newton::{self, Progress, Residuals, Stop, minimise};
 use crate::linalg::least_squares::LeastSquares;
+use crate::mesh::curve::{Curve, Spacing, resample};
 
-/// Arcs of a snake at most.
-const MOST_ARCS: usize = 100_000;
+/// Arcs of a snake at most: the deviation is looked for in all of them.
+const MOST_ARCS: usize = 10_000;
 
 /// What the weight of nearness is multiplied by, one minimisation after the other. With the paper's, which the first has, distances are
 /// off so much that meeting them would move arcs by more than they are off the curve.
 const ROUNDS: [f64; 3] = [1.0, 1e-2, 1e-4];
+
+/// Into how many parts of a curve an arc's is divided.
+const PER_ARC: usize = 32;
 
 /// Arcs turn by more than this and by less than π less it, in radians, as those of snakes do.
 const LEAST_ANGLE: f64 = 1e-6;
@@ -80,7 +85,7 @@ pub struct FittedSnake {
 ///
 /// # Errors
 /// Fewer than 3 points, coordinates that are not finite, points that repeat the one before (`points`, `points[i]`); no arcs or more
-/// than 100 000, or so few that one would have to turn by π or more (`arc_count`); options out of their ranges (`options.nearness`,
+/// than 10 000, or so few that one would have to turn by π or more (`arc_count`); options out of their ranges (`options.nearness`,
 /// `options.curvature`). Status `Degenerate`: the curve is straight along an arc, which snakes have none of (`points`).
 pub fn fit(
     points: &[DVec3],
@@ -109,6 +114,25 @@ pub fn fit(
     let snake = snake.moved(control)?;
     let deviation = deviation(points, &snake);
     Ok(FittedSnake { snake, deviation, residual, iterations, stop })
+}
+
+/// The snake of `arc_count` arcs along an open curve, as [`fit`] to points evenly spaced on it, 32 to an arc.
+///
+/// # Errors
+/// As [`fit`]; a closed curve, or one without a length (`curve`).
+pub fn fit_curve(
+    curve: &dyn Curve,
+    arc_count: usize,
+    options: &Options,
+    progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<FittedSnake> {
+    check(arc_count, options)?;
+    if curve.is_closed() {
+        return Err(Error::new(Status::InvalidValue, "expected an open curve, found a closed one").at("curve"));
+    }
+    let parameters = resample(curve, PER_ARC * arc_count + 1, Spacing::ArcLength).map_err(|error| error.at("curve"))?;
+    let points: Vec<DVec3> = parameters.into_iter().map(|parameter| curve.point(parameter)).collect();
+    fit(&points, arc_count, options, progress)
 }
 
 /// The largest distance of the points from the nearest arc of a snake.

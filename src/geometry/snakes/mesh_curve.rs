@@ -60,7 +60,7 @@ pub fn mesh_curve(
     check_finite("start", &[start])?;
     check_finite("tangent", &[tangent])?;
     let at = near(reference, start)?;
-    let mut tracer = Tracer { mesh: reference.mesh(), patches: BTreeMap::new(), crossing_count: 0 };
+    let mut tracer = Tracer { mesh: reference.mesh(), patches: BTreeMap::new() };
     let patch = tracer.patch(at.triangle as usize);
     let flat = patch.flat(reference.mesh().position(at));
     let jet = patch.at(flat[0], flat[1]);
@@ -68,7 +68,8 @@ pub fn mesh_curve(
         return Err(Error::new(Status::Degenerate, "expected a point where the mesh does not fold").at("start"));
     }
     let rate = directed(&jet, tangent).ok_or_else(|| no_direction(tangent))?;
-    let mut place = Place { triangle: at.triangle as usize, entered: None, state: State { at: flat, rate } };
+    let mut place =
+        Place { triangle: at.triangle as usize, entered: None, crossing_count: 0, state: State { at: flat, rate } };
     check_start(&jet, &place.state, course)?;
     let mut triangles = vec![at.triangle];
     let mut recorder = Recorder::new(jet.point, velocity(&jet, rate), course.length, options.steps);
@@ -91,20 +92,17 @@ pub fn mesh_curve(
             let last = if end == End::Boundary { last_inside(|factor| take(factor).ok()) } else { None };
             let last = last.map(|(factor, last)| {
                 triangles.push(last.triangle as u32);
+                place = last;
                 let (point, tangent) = tracer.point(&last);
                 (point, tangent, along + done + factor * part)
             });
-            return Ok(MeshCurve {
-                curve: recorder.ended(end, last),
-                triangles,
-                crossing_count: tracer.crossing_count,
-            });
+            return Ok(MeshCurve { curve: recorder.ended(end, last), triangles, crossing_count: place.crossing_count });
         }
         let (point, tangent) = tracer.point(&place);
         recorder.add(point, tangent, along + step);
         triangles.push(place.triangle as u32);
     }
-    Ok(MeshCurve { curve: recorder.ended(End::Length, None), triangles, crossing_count: tracer.crossing_count })
+    Ok(MeshCurve { curve: recorder.ended(End::Length, None), triangles, crossing_count: place.crossing_count })
 }
 
 /// The nearest point of the mesh, if it is near.
@@ -127,6 +125,8 @@ struct Place {
     triangle: usize,
     /// The edge that it came in by, while it is not inside of it.
     entered: Option<usize>,
+    /// How many edges it has crossed.
+    crossing_count: usize,
     /// In the frame of the triangle's patch.
     state: State,
 }
@@ -134,7 +134,6 @@ struct Place {
 struct Tracer<'a> {
     mesh: &'a TriangleMesh,
     patches: BTreeMap<usize, Rc<FacePatch>>,
-    crossing_count: usize,
 }
 
 impl Tracer<'_> {
@@ -160,7 +159,7 @@ impl Tracer<'_> {
     ) -> std::result::Result<Place, Refusal> {
         let patch = self.patch(place.triangle);
         place.state = advance(&|x, y| patch.at(x, y), &place.state, course, along, step, options.method)?;
-        for crossed in 0..MOST_CROSSINGS {
+        for _ in 0..MOST_CROSSINGS {
             let weights = self.patch(place.triangle).weights(place.state.at);
             // Over edge k the corner after its end has a negative weight.
             let weight = |edge: usize| weights[(edge + 2) % 3];
@@ -169,7 +168,6 @@ impl Tracer<'_> {
             let out =
                 (0..3).filter(|&edge| weight(edge) < least(edge)).min_by(|&a, &b| weight(a).total_cmp(&weight(b)));
             let Some(edge) = out else {
-                self.crossing_count += crossed;
                 return Ok(place);
             };
             let Some((other, opposite)) = self.mesh.across(place.triangle, edge) else {
@@ -187,6 +185,7 @@ impl Tracer<'_> {
         let at = patch.flat(point);
         let jet = patch.at(at[0], at[1]);
         let rate = if is_regular(&jet) { directed(&jet, tangent)? } else { return None };
-        Some(Place { triangle, entered: Some(entered), state: State { at, rate } })
+        let crossing_count = place.crossing_count + 1;
+        Some(Place { triangle, entered: Some(entered), crossing_count, state: State { at, rate } })
     }
 }

@@ -15,14 +15,21 @@
 //! dimension `N + 5`, or `N` if the snake is closed with at least 6 arcs; an open one that has to stay on a surface keeps 3 freedoms.
 
 mod arc;
+mod congruence;
+pub mod covering;
 pub mod curvature_curve;
 mod curve_step;
 mod face_patch;
 pub mod fit;
+mod linkage;
 pub mod mesh_curve;
+pub mod motion;
 mod polish;
 mod samples;
 mod snake;
+pub mod sweep;
 
 pub use arc::Arc;
+pub use congruence::{Congruence, congruence};
+pub use linkage::Linkage;
 pub use snake::{ArcShape, Distance, Pose, Snake};

@@ -14,6 +14,8 @@ pub(super) struct Samples<'a> {
     points: &'a [DVec3],
     lengths: Vec<f64>,
     curvatures: Vec<f64>,
+    /// The integral of the curvature up to each point.
+    turned: Vec<f64>,
 }
 
 impl<'a> Samples<'a> {
@@ -38,12 +40,13 @@ impl<'a> Samples<'a> {
             circle_curvature([points[i - 1], points[i], points[i + 1]])
         };
         let curvatures: Vec<f64> = (0..=last).map(curvature).collect();
-        let mut lengths = vec![0.0];
+        let (mut lengths, mut turned) = (vec![0.0], vec![0.0]);
         for i in 0..last {
             let (chord, mean) = (points[i].distance(points[i + 1]), 0.5 * (curvatures[i] + curvatures[i + 1]));
             lengths.push(lengths[i] + arc_length(chord, mean));
+            turned.push(turned[i] + mean * (lengths[i + 1] - lengths[i]));
         }
-        Ok(Self { points, lengths, curvatures })
+        Ok(Self { points, lengths, curvatures, turned })
     }
 
     pub fn length(&self) -> f64 {
@@ -92,11 +95,8 @@ impl<'a> Samples<'a> {
     /// The integral of the curvature from the start to a length.
     fn turned(&self, along: f64) -> f64 {
         let (i, t) = self.part(along);
-        let piece =
-            |i: usize| 0.5 * (self.lengths[i + 1] - self.lengths[i]) * (self.curvatures[i] + self.curvatures[i + 1]);
-        let whole: f64 = (0..i).map(piece).sum();
         let [a, b] = [self.curvatures[i], self.curvatures[i + 1]];
-        whole + (self.lengths[i + 1] - self.lengths[i]) * t * (a + 0.5 * t * (b - a))
+        self.turned[i] + (self.lengths[i + 1] - self.lengths[i]) * t * (a + 0.5 * t * (b - a))
     }
 
     /// The points from one length to another; those at the ends where there are fewer than three.

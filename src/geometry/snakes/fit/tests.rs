@@ -33,7 +33,7 @@ fn more_arcs_are_nearer_to_a_curve_of_constant_curvature() {
     for count in [4, 12, 24] {
         let found = fit(&points, count, &Options { curvature: Some(1.8), ..Options::default() }, &mut on).unwrap();
         assert!(found.snake.residual() <= 1e-12 && found.residual == found.snake.residual(), "{}", found.residual);
-        let [first, ..] = found.snake.shapes() else { unreachable!() };
+        let first = &found.snake.shapes()[0];
         assert!(found.snake.shapes().iter().all(|shape| shape == first) && (first.radius - 1.0 / 1.8).abs() < 1e-14);
         assert!((found.snake.length() - 3.0).abs() < 1e-6);
         let sampled = sampled_deviation(&points, &found.snake);
@@ -68,6 +68,33 @@ fn one_arc_fits_its_circle_exactly() {
             assert!((found.snake.length() / scale - 1.7 * angle).abs() < 1e-11);
         }
     }
+}
+
+#[test]
+fn a_spline_is_fitted_like_its_points() {
+    use crate::mesh::curve::{Jet, Spline};
+    // A helix of radius 1 and slope ½: the curvature is 1/(1 + ¼).
+    struct Helix;
+    impl Curve for Helix {
+        fn range(&self) -> [f64; 2] {
+            [0.0, 3.0]
+        }
+        fn is_closed(&self) -> bool {
+            false
+        }
+        fn at(&self, t: f64) -> Jet {
+            let (sine, cosine) = t.sin_cos();
+            let [point, first, second] = [(cosine, sine, 0.5 * t), (-sine, cosine, 0.5), (-cosine, -sine, 0.0)];
+            Jet { point: point.into(), first: first.into(), second: second.into() }
+        }
+    }
+    let found = fit_curve(&Helix, 6, &Options::default(), &mut on).unwrap();
+    assert!((found.snake.shapes()[0].radius - 1.25).abs() < 1e-4 && found.residual < 1e-13);
+    assert!((found.snake.length() - 3.0 * 1.25_f64.sqrt()).abs() < 1e-5);
+    // Arcs of 0.56 with the torsion of 0.4 between their middles are off by about κ τ L³ / 50.
+    assert!(found.deviation < 5e-3, "{}", found.deviation);
+    let closed = Spline::through(&[DVec3::X, DVec3::Y, DVec3::NEG_X], true).unwrap();
+    assert_eq!(fit_curve(&closed, 6, &Options::default(), &mut on).unwrap_err().place(), "curve");
 }
 
 #[test]
