@@ -199,7 +199,7 @@ pub(super) fn no_direction(tangent: DVec3) -> Error {
 /// Refuses a curve that cannot even begin.
 pub(super) fn check_start(jet: &SurfaceJet, state: &State, course: &Course) -> Result<()> {
     let curvature = curvature(course, 0.0)?;
-    match geodesic_curvature(jet, velocity(jet, state.rate), bend(jet, state.rate), curvature) {
+    match geodesic_curvature(jet, velocity(jet, state.rate), bend(jet, state.rate), curvature, course.length) {
         Err(End::NoSolution { curvature, normal_curvature }) => {
             let reason = format!(
                 "expected a curvature of at least {}, which the surface has in this direction at the start (length 0); found \

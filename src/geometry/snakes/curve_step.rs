@@ -28,6 +28,9 @@ type Stepped<T> = std::result::Result<T, Refusal>;
 /// 1e-7 where there is none.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
+/// Or below the square of this over the length of the curve, which bends less than that in all: a plane has no curvature but round-off.
+const FLAT: f64 = 1e-10;
+
 /// A point in parameters, and the parameters' derivatives by the arc length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
@@ -81,16 +84,17 @@ pub(super) fn curvature(course: &Course, along: f64) -> Result<f64> {
     Err(Error::new(Status::InvalidValue, reason).at("course.curvature"))
 }
 
-/// `√(κ² − κ_n²)` for the direction with the unit velocity and the bend given.
+/// `√(κ² − κ_n²)` for the direction with the unit velocity and the bend given, of a curve of a length.
 pub(super) fn geodesic_curvature(
     jet: &SurfaceJet,
     velocity: DVec3,
     bend: DVec3,
     curvature: f64,
+    length: f64,
 ) -> std::result::Result<f64, End> {
     let normal_curvature = jet.normal().dot(bend) / velocity.length_squared();
     let square = (curvature - normal_curvature) * (curvature + normal_curvature);
-    let round_off = ROUND_OFF * curvature.max(normal_curvature.abs()).powi(2);
+    let round_off = (ROUND_OFF * curvature.max(normal_curvature.abs()).powi(2)).max((FLAT / length).powi(2));
     if square < -round_off {
         return Err(End::NoSolution { curvature, normal_curvature });
     }
@@ -136,7 +140,7 @@ fn runge_kutta(
         let rate = state.rate.map(|rate| rate / speed);
         let (velocity, bend) = (velocity(&jet, rate), bend(&jet, rate));
         let kappa = curvature(course, along).map_err(Refusal::Error)?;
-        let geodesic = geodesic_curvature(&jet, velocity, bend, kappa).map_err(Refusal::End)?;
+        let geodesic = geodesic_curvature(&jet, velocity, bend, kappa, course.length).map_err(Refusal::End)?;
         let turn = if course.side == Side::Left { geodesic } else { -geodesic };
         Ok(State { at: rate, rate: rates(&jet, turn * jet.normal().cross(velocity) - bend) })
     };

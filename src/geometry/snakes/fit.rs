@@ -18,13 +18,14 @@
 //! o = p + (r / sin θ) ((p₋ − p)/a + (p₊ − p)/b),   n = (p − p₋) × (p₊ − p) / (a b sin θ).
 //! ```
 
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
 
 use super::polish::polish;
 use super::samples::Samples;
-use super::{ArcShape, Distance, Snake};
+use super::{ArcShape, Distance, Pose, Snake};
 use crate::error::{Error, Result, Status};
 use crate::linalg::gauss_newton::{self, Progress, Residuals, Stop, minimise};
 use crate::linalg::least_squares::LeastSquares;
@@ -167,8 +168,8 @@ fn shapes(samples: &Samples, arc_count: usize, options: &Options) -> Result<Vec<
         let here = || samples.mean_curvature(j as f64 * length, (j + 1) as f64 * length);
         let curvature = options.curvature.unwrap_or_else(|| if options.is_congruent { whole } else { here() });
         let angle = curvature * length;
-        if angle >= std::f64::consts::PI - LEAST_ANGLE {
-            let least = (curvature * samples.length() / std::f64::consts::PI).floor() + 1.0;
+        if angle >= PI - LEAST_ANGLE {
+            let least = (curvature * samples.length() / PI).floor() + 1.0;
             let reason = format!("expected at least {least}, so that no arc is half a circle; found {arc_count}");
             return Err(Error::new(Status::InvalidValue, reason).at("arc_count"));
         }
@@ -195,7 +196,7 @@ fn start(samples: &Samples, shapes: &[ArcShape]) -> Result<Snake> {
     control.extend(shapes.iter().enumerate().map(vertex));
     control.push(contact(shapes.len()));
     // Some snake with these arcs, to be given other control points.
-    let pose = super::Pose { point: DVec3::ZERO, tangent: DVec3::X, normal: DVec3::Y };
+    let pose = Pose { point: DVec3::ZERO, tangent: DVec3::X, normal: DVec3::Y };
     Snake::from_arcs(shapes, &vec![0.0; shapes.len() - 1], &pose)?.moved(control)
 }
 

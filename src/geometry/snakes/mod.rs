@@ -19,6 +19,7 @@ mod congruence;
 pub mod covering;
 pub mod curvature_curve;
 mod curve_step;
+mod drive;
 mod face_patch;
 pub mod fit;
 mod linkage;

@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::Distance;
 use crate::error::Result;
 use crate::linalg::least_squares::{LeastSquares, Solver};
+use crate::mesh::grid::diagonal;
 
 /// `√ε`: with entries of `J` up to 1, `ε` is far enough above round-off that directions that `J` does not see stay at rest.
 const DAMPING: f64 = 3e-5;
@@ -46,7 +47,7 @@ pub(super) fn polish(
         number[i] = Some(3 * free.len() as u32);
         free.push(i);
     }
-    let size = crate::mesh::grid::diagonal(control);
+    let size = diagonal(control);
     let (mut equations, mut solver) = (LeastSquares::new(3 * free.len()), Solver::default());
     let (mut best, mut least, mut idle) = (control.clone(), f64::INFINITY, 0);
     for _ in 0..=MOST_STEPS {

@@ -2,9 +2,9 @@ use std::f64::consts::PI;
 
 use super::*;
 use crate::geometry::snakes::mesh_curve::{MeshCurve, mesh_curve};
-use crate::mesh::TriangleMesh;
 use crate::mesh::reference::{ParametricSurface, ReferenceMesh};
 use crate::mesh::surfaces::{cylinder, sphere, torus};
+use crate::mesh::{Mesh, TriangleMesh};
 
 const EVERYWHERE: [[f64; 2]; 2] = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 
@@ -227,4 +227,69 @@ fn curves_on_meshes_end_at_the_boundary_and_go_straight_on_planes() {
     assert!((curve.lengths[last] - 0.9_f64.hypot(0.6)).abs() < 1e-9);
     let far = mesh_curve(&reference, DVec3::new(0.5, 0.5, 1.0), DVec3::X, &course, &Options::default()).unwrap_err();
     assert_eq!((far.status(), far.place()), (Status::OutOfDomain, "start"));
+}
+
+#[test]
+fn curves_on_meshes_do_not_depend_on_the_scale() {
+    // Powers of two, so that quads are split along the same diagonals.
+    let found = [1.0 / 1024.0, 1.0, 1024.0].map(|scale: f64| {
+        let patch = ParametricSurface::new([[-1.0, 1.0], [-0.8, 0.8]], [20, 20], sphere(scale)).unwrap();
+        let mesh = TriangleMesh::new(&patch.mesh(25, 25).unwrap()).unwrap();
+        let curvature = move |_: f64| 3.0 / scale;
+        let course = Course { curvature: &curvature, length: 2.0 * scale, side: Side::Right };
+        let start = patch.at(0.1, 0.1).point;
+        let found = mesh_curve(&ReferenceMesh::new(&mesh), start, DVec3::Y, &course, &Options::default()).unwrap();
+        assert_eq!(found.curve.end, End::Length);
+        found.curve.points[200] / scale
+    });
+    assert!(found[0].distance(found[1]) < 1e-9 && found[2].distance(found[1]) < 1e-9, "{found:?}");
+}
+
+#[test]
+fn lines_go_along_edges_and_through_points_of_a_mesh() {
+    let square = ParametricSurface::new([[0.0, 1.0], [0.0, 1.0]], [2, 2], |u, v| SurfaceJet {
+        point: DVec3::new(u, v, 0.3 * u),
+        first: [DVec3::X, DVec3::Y],
+        second: [DVec3::ZERO; 3],
+    });
+    let mesh = TriangleMesh::new(&square.unwrap().mesh(9, 9).unwrap()).unwrap();
+    let reference = ReferenceMesh::new(&mesh);
+    let slope = DVec3::new(1.0, 0.0, 0.3);
+    for direction in [slope, slope + DVec3::Y, 2.0 * slope + DVec3::Y] {
+        let course = Course { curvature: &|_| 0.0, length: 0.7, side: Side::Left };
+        let start = 0.125 * (slope + DVec3::Y);
+        let found = mesh_curve(&reference, start, direction, &course, &Options::default()).unwrap();
+        let end = start + 0.7 * direction.normalize();
+        assert_eq!(found.curve.end, End::Length);
+        assert!(found.curve.points[200].distance(end) < 1e-12, "{}", found.curve.points[200]);
+    }
+}
+
+#[test]
+fn a_cube_and_a_fold_come_to_an_end() {
+    let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let cube = Mesh { points: (0..8).map(corner).collect(), faces: faces.map(|face| face.to_vec()).to_vec() };
+    // Two sheets that nearly touch.
+    let fold = |x: f64, y: f64| DVec3::new(x.abs(), y, 1e-3 * x);
+    let fold = crate::mesh::patterns::parametric_surface(9, 9, [-1.0, 1.0], [0.0, 1.0], fold).unwrap();
+    for (mesh, start) in [(cube, DVec3::new(0.4, 0.45, 1.0)), (fold, DVec3::new(0.7, 0.45, 7e-4))] {
+        let mesh = TriangleMesh::new(&mesh).unwrap();
+        for i in 0..24 {
+            let (sine, cosine) = (0.26 * f64::from(i)).sin_cos();
+            for kappa in [0.0, 2.0, 30.0] {
+                let course = Course { curvature: &|_| kappa, length: 6.0, side: Side::Left };
+                let tangent = DVec3::new(cosine, sine, 0.0);
+                match mesh_curve(&ReferenceMesh::new(&mesh), start, tangent, &course, &Options::default()) {
+                    Ok(found) => {
+                        let curve = found.curve;
+                        assert!(curve.points.iter().chain(&curve.tangents).all(|v| v.is_finite()));
+                        assert_eq!(curve.points.len(), found.triangles.len());
+                        assert!(curve.lengths.windows(2).all(|pair| pair[0] < pair[1]), "{:?}", curve.end);
+                    }
+                    Err(error) => assert_eq!(error.status(), Status::NoSolution),
+                }
+            }
+        }
+    }
 }

@@ -1,5 +1,3 @@
-use std::f64::consts::PI;
-
 use super::*;
 use crate::geometry::random::Random;
 use crate::geometry::snakes::curvature_curve::{Course, Side, curvature_curve};

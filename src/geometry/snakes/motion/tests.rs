@@ -1,6 +1,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::*;
+use crate::geometry::snakes::drive::dot;
 use crate::geometry::snakes::linkage::tests::{six_arcs, snake};
 
 fn on(_: &Progress) -> ControlFlow<()> {
