@@ -9,6 +9,8 @@
 //! plus for a curve that turns left, seen from where `n` points. From a point and a direction there is one of either kind as long as
 //! `κ` is above `|κ_n|`, and none where it is below.
 
+use std::fmt;
+
 use glam::DVec3;
 
 use super::curve_step::{Refusal, State, advance, bend, curvature, directed, geodesic_curvature, is_regular, velocity};
@@ -66,6 +68,13 @@ pub struct Course<'a> {
     pub side: Side,
 }
 
+impl fmt::Debug for Course<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { length, side, .. } = self;
+        f.debug_struct("Course").field("length", length).field("side", side).finish_non_exhaustive()
+    }
+}
+
 /// Why a curve ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
@@ -111,7 +120,7 @@ pub fn curvature_curve(
     ranges: [[f64; 2]; 2],
     start: [f64; 2],
     tangent: DVec3,
-    course: &Course,
+    course: &Course<'_>,
     options: &Options,
 ) -> Result<CurvatureCurve> {
     check(course, options)?;
@@ -179,7 +188,7 @@ pub(super) fn last_inside<T>(mut take: impl FnMut(f64) -> Option<T>) -> Option<(
 }
 
 /// Checks what does not depend on the surface.
-pub(super) fn check(course: &Course, options: &Options) -> Result<()> {
+pub(super) fn check(course: &Course<'_>, options: &Options) -> Result<()> {
     if !(course.length > 0.0 && course.length.is_finite()) {
         let reason = format!("expected a finite length above 0, found {}", course.length);
         return Err(Error::new(Status::InvalidValue, reason).at("course.length"));
@@ -197,7 +206,7 @@ pub(super) fn no_direction(tangent: DVec3) -> Error {
 }
 
 /// Refuses a curve that cannot even begin.
-pub(super) fn check_start(jet: &SurfaceJet, state: &State, course: &Course) -> Result<()> {
+pub(super) fn check_start(jet: &SurfaceJet, state: &State, course: &Course<'_>) -> Result<()> {
     let curvature = curvature(course, 0.0)?;
     match geodesic_curvature(jet, velocity(jet, state.rate), bend(jet, state.rate), curvature, course.length) {
         Err(End::NoSolution { curvature, normal_curvature }) => {

@@ -75,7 +75,7 @@ pub(super) fn bend(jet: &SurfaceJet, [u, v]: [f64; 2]) -> DVec3 {
     u * u * jet.second[0] + 2.0 * u * v * jet.second[1] + v * v * jet.second[2]
 }
 
-pub(super) fn curvature(course: &Course, along: f64) -> Result<f64> {
+pub(super) fn curvature(course: &Course<'_>, along: f64) -> Result<f64> {
     let curvature = (course.curvature)(along);
     if curvature >= 0.0 && curvature.is_finite() {
         return Ok(curvature);
@@ -105,7 +105,7 @@ pub(super) fn geodesic_curvature(
 pub(super) fn advance(
     surface: &dyn Fn(f64, f64) -> SurfaceJet,
     state: &State,
-    course: &Course,
+    course: &Course<'_>,
     along: f64,
     step: f64,
     method: Method,
@@ -126,7 +126,7 @@ pub(super) fn advance(
 fn runge_kutta(
     surface: &dyn Fn(f64, f64) -> SurfaceJet,
     state: &State,
-    course: &Course,
+    course: &Course<'_>,
     along: f64,
     step: f64,
 ) -> Stepped<State> {
@@ -163,7 +163,7 @@ fn runge_kutta(
 fn chord(
     surface: &dyn Fn(f64, f64) -> SurfaceJet,
     state: &State,
-    course: &Course,
+    course: &Course<'_>,
     along: f64,
     step: f64,
 ) -> Stepped<State> {

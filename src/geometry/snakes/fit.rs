@@ -161,7 +161,7 @@ fn search(options: &Options) -> gauss_newton::Options {
     gauss_newton::Options { relative_decrease: 1e-9, max_iterations: options.max_iterations, ..Default::default() }
 }
 
-fn shapes(samples: &Samples, arc_count: usize, options: &Options) -> Result<Vec<ArcShape>> {
+fn shapes(samples: &Samples<'_>, arc_count: usize, options: &Options) -> Result<Vec<ArcShape>> {
     let length = samples.length() / arc_count as f64;
     let whole = samples.mean_curvature(0.0, samples.length());
     let shape = |j: usize| {
@@ -184,7 +184,7 @@ fn shapes(samples: &Samples, arc_count: usize, options: &Options) -> Result<Vec<
 }
 
 /// A snake near the curve that does not keep its distances yet.
-fn start(samples: &Samples, shapes: &[ArcShape]) -> Result<Snake> {
+fn start(samples: &Samples<'_>, shapes: &[ArcShape]) -> Result<Snake> {
     let length = shapes[0].length;
     let contact = |j: usize| samples.point(j as f64 * length);
     let tangent = |j: usize| samples.tangent(j as f64 * length);
@@ -219,7 +219,7 @@ struct Fit {
 }
 
 impl Fit {
-    fn new(snake: &Snake, samples: &Samples, nearness: f64) -> Self {
+    fn new(snake: &Snake, samples: &Samples<'_>, nearness: f64) -> Self {
         let distances = snake.distances();
         let arc = |(j, shape): (usize, &ArcShape)| {
             // Edges come first among the distances.

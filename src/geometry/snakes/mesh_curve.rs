@@ -50,10 +50,10 @@ pub struct MeshCurve {
 /// As [`curvature_curve`](super::curvature_curve()), but for the start: one that is farther from the mesh than the longest edge of
 /// the nearest triangle (`start`, status `OutOfDomain`), or where the patch folds (`start`, status `Degenerate`).
 pub fn mesh_curve(
-    reference: &ReferenceMesh,
+    reference: &ReferenceMesh<'_>,
     start: DVec3,
     tangent: DVec3,
-    course: &Course,
+    course: &Course<'_>,
     options: &Options,
 ) -> Result<MeshCurve> {
     check(course, options)?;
@@ -106,7 +106,7 @@ pub fn mesh_curve(
 }
 
 /// The nearest point of the mesh, if it is near.
-fn near(reference: &ReferenceMesh, start: DVec3) -> Result<SurfacePoint> {
+fn near(reference: &ReferenceMesh<'_>, start: DVec3) -> Result<SurfacePoint> {
     let at = reference.locate(start);
     let [a, b, c] = reference.mesh().corners(at.triangle as usize);
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
@@ -152,7 +152,7 @@ impl Tracer<'_> {
     fn advance(
         &mut self,
         mut place: Place,
-        course: &Course,
+        course: &Course<'_>,
         along: f64,
         step: f64,
         options: &Options,

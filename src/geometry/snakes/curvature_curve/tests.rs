@@ -18,7 +18,7 @@ fn trace(
     surface: &dyn Fn(f64, f64) -> SurfaceJet,
     start: [f64; 2],
     tangent: DVec3,
-    course: &Course,
+    course: &Course<'_>,
     steps: usize,
     method: Method,
 ) -> CurvatureCurve {
@@ -178,7 +178,7 @@ fn on_mesh<F: Fn(f64, f64) -> SurfaceJet + Sync>(
     [columns, rows]: [usize; 2],
     start: [f64; 2],
     tangent: DVec3,
-    course: &Course,
+    course: &Course<'_>,
 ) -> (MeshCurve, f64, f64) {
     let mesh = TriangleMesh::new(&surface.mesh(columns, rows).unwrap()).unwrap();
     let at = surface.at(start[0], start[1]).point;
