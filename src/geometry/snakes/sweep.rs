@@ -107,11 +107,13 @@ pub(super) fn check_direction(name: &str, direction: DVec3) -> Result<DVec3> {
 #[cfg(test)]
 mod tests {
     use std::f64::consts::TAU;
+    use std::ops::ControlFlow;
 
     use glam::DMat3;
 
     use super::*;
     use crate::geometry::snakes::Pose;
+    use crate::geometry::snakes::motion::cycle;
 
     /// The circle of radius `tube` about (`radius`, 0, 0) in the xz plane, of five arcs.
     fn circle(radius: f64, tube: f64) -> Snake {
@@ -174,6 +176,24 @@ mod tests {
         assert_eq!(refused(&bad, 3, false), "frames[2][1]");
         bad[2].pop();
         assert_eq!(refused(&bad, 3, false), "frames[2]");
+    }
+
+    #[test]
+    fn the_motion_of_a_linkage_sweeps_a_surface_that_comes_back() {
+        let linkage = crate::geometry::snakes::linkage::tests::six_arcs();
+        let motion = cycle(&linkage, &Default::default(), &mut |_| ControlFlow::Continue(())).unwrap();
+        let grid = swept_grid(linkage.snake(), &motion.frames, 8, true).unwrap();
+        assert_eq!((grid.rows(), grid.columns(), grid.wraps()), (motion.frames.len(), 49, [true, false]));
+        // All rows are of one length: chords of arcs of 60 degrees in eight parts.
+        let chord = 2.0 * (TAU / 96.0).sin();
+        for i in 0..grid.rows() {
+            assert!(grid.row(i).windows(2).all(|pair| (pair[0].distance(pair[1]) - chord).abs() < 1e-13));
+            // The end arcs turn about their hinges: all points of theirs keep the distance from the fixed points.
+            let apart = |j: usize, point: DVec3| grid.at(i, j).distance(point) - grid.at(0, j).distance(point);
+            assert!(apart(5, linkage.snake().control()[1]).abs() < 1e-13);
+        }
+        let paths = motion.contact_paths().unwrap();
+        assert!((0..grid.rows()).all(|i| grid.at(i, 24).distance(paths[3][i]) < 1e-14));
     }
 
     #[test]

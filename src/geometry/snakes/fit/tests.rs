@@ -1,6 +1,9 @@
 use super::*;
 use crate::geometry::random::Random;
 use crate::geometry::snakes::curvature_curve::{Course, Side, curvature_curve};
+use crate::geometry::snakes::mesh_curve::mesh_curve;
+use crate::mesh::TriangleMesh;
+use crate::mesh::reference::{ParametricSurface, ReferenceMesh, ReferenceSurface};
 use crate::mesh::surfaces::torus;
 
 fn on(_: &Progress) -> ControlFlow<()> {
@@ -48,6 +51,29 @@ fn more_arcs_are_nearer_to_a_curve_of_constant_curvature() {
     }
     let ratios = [deviations[0] / deviations[1], deviations[1] / deviations[2]];
     assert!(ratios[0] >= 4.0 && ratios[1] >= 2.5, "{deviations:?} {ratios:?}");
+}
+
+#[test]
+fn a_curve_on_a_mesh_is_fitted() {
+    let surface = ParametricSurface::new([[-1.5, 1.5], [-2.0, 2.0]], [20, 20], torus(2.0, 0.7)).unwrap();
+    let mesh = TriangleMesh::new(&surface.mesh(60, 60).unwrap()).unwrap();
+    let course = Course { curvature: &|_| 1.8, length: 2.5, side: Side::Left };
+    let jet = surface.at(0.1, 0.2);
+    let tangent = jet.normal().cross(DVec3::new(0.3, 0.5, 1.0));
+    let curve = mesh_curve(&ReferenceMesh::new(&mesh), jet.point, tangent, &course, &Default::default()).unwrap().curve;
+    for options in [Options { curvature: Some(1.8), ..Options::default() }, Options::default()] {
+        let found = fit(&curve.points, 12, &options, &mut on).unwrap();
+        let shape = found.snake.shapes()[0];
+        assert!((1.8 * shape.radius - 1.0).abs() < 0.01, "{}", shape.radius);
+        assert!(found.residual <= 1e-12 && found.deviation < 5e-3, "{}", found.deviation);
+        // The control points alone give the same arcs.
+        let again = Snake::new(found.snake.control().to_vec(), false, None).unwrap();
+        let apart = |a: &ArcShape| (a.radius - shape.radius).abs().max((a.length - shape.length).abs());
+        assert!(again.shapes().iter().all(|a| apart(a) < 1e-10));
+        // Contacts are near the surface.
+        let reference = surface.nearest(found.snake.contacts()[6]);
+        assert!(reference.point.distance(found.snake.contacts()[6]) < 5e-3);
+    }
 }
 
 #[test]
