@@ -1,11 +1,13 @@
 //! Pipes and lamellae along a snake: the tubular and the laminar covering of a surface (Bartoň et al. 2013, figure 2).
 //!
-//! A pipe is a piece of a torus around each arc. Points of a section go straight on to the next: along an arc a section turns about the
-//! axis of the arc's circle, which is the motion that does not turn about the tangent. Around a closed snake that leaves an angle
-//! between the last section and the first; it is spread evenly over the length, so that sections fit each other.
+//! A pipe is a piece of a torus around each arc. Points of a section go straight on to the next: along an arc a section turns about
+//! the axis of the arc's circle, which is the motion that does not turn about the tangent. Around a closed snake that leaves an
+//! angle between the last section and the first; it is spread evenly over the length, so that sections fit each other.
 //!
 //! Lamellae are bands of a constant depth. Flat ones are sectors of rings in the planes of the arcs, one for each arc, which meet
 //! along the arcs' ends only. Those across a surface go in given directions, as of its normal, and are one band.
+
+use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec3};
 
@@ -18,12 +20,12 @@ use crate::mesh::grid::Grid;
 /// Across is at least this part of a direction: what is left has a direction to round-off then.
 const ACROSS: f64 = 1e-9;
 
-/// The pipe of a radius around a snake, in row `i` the points of a section, `around` of them, at `per_arc` intervals in each arc. Quads
-/// face outward. An open snake's pipe is open at its ends, a closed one's wraps around.
+/// The pipe of a radius around a snake, in row `i` the points of a section, `around` of them, at `per_arc` intervals in each arc.
+/// Quads face outward. An open snake's pipe is open at its ends, a closed one's wraps around.
 ///
 /// # Errors
-/// A radius that is not above 0, or not below the radii of the arcs, as the pipe would fold (`radius`); no intervals or more than 65 536
-/// (`per_arc`), fewer than 3 points around or more than 65 536 (`around`); more points than 32-bit indices hold (`points`).
+/// A radius that is not above 0, or not below the radii of the arcs, as the pipe would fold (`radius`); no intervals or more than
+/// 65 536 (`per_arc`), fewer than 3 points around or more than 65 536 (`around`); more points than 32-bit indices hold (`points`).
 pub fn pipe(snake: &Snake, radius: f64, per_arc: usize, around: usize) -> Result<Grid> {
     check_intervals("per_arc", per_arc)?;
     check_intervals("around", around)?;
@@ -35,45 +37,46 @@ pub fn pipe(snake: &Snake, radius: f64, per_arc: usize, around: usize) -> Result
         let reason = format!("expected above 0 and below {least}, the least radius of an arc; found {radius}");
         return Err(Error::new(Status::InvalidValue, reason).at("radius"));
     }
-    let arcs = snake.arcs();
-    let first = any_orthogonal(arcs[0].tangent(0.0)).normalize();
-    let last = arcs.iter().fold(first, |out, arc| transported(arc, out, 1.0));
-    let rest = if snake.is_closed() {
-        let tangent = arcs[0].tangent(0.0);
-        tangent.dot(last.cross(first)).atan2(last.dot(first))
-    } else {
-        0.0
-    };
     let rows = row_count(snake, per_arc);
     check_size(rows, around)?;
-    let (mut points, mut out, mut along) = (Vec::with_capacity(rows * around), first, 0.0);
-    let mut section = |arc: &Arc, out: DVec3, part: f64, along: f64| {
-        let (center, tangent) = (arc.point(part), arc.tangent(part));
-        let turned = DMat3::from_axis_angle(tangent, rest * along) * transported(arc, out, part);
-        let aside = turned.cross(tangent);
-        points.extend((0..around).map(|k| {
-            let (sine, cosine) = (std::f64::consts::TAU * k as f64 / around as f64).sin_cos();
-            center + radius * (cosine * turned + sine * aside)
-        }));
-    };
+    let arcs = snake.arcs();
+    let tangent = arcs[0].tangent(0.0);
+    let first = any_orthogonal(tangent).normalize();
+    // Where each arc begins: a direction across it, and the part of the snake's length before it.
+    let (mut starts, mut out, mut along) = (Vec::with_capacity(arcs.len()), first, 0.0);
     for arc in &arcs {
-        let part_of_all = arc.length() / snake.length();
-        for k in 0..per_arc {
-            let part = k as f64 / per_arc as f64;
-            section(arc, out, part, along + part * part_of_all);
-        }
-        along += part_of_all;
-        if !snake.is_closed() && std::ptr::eq(arc, &arcs[arcs.len() - 1]) {
-            section(arc, out, 1.0, along);
-        }
+        starts.push((out, along));
         out = transported(arc, out, 1.0);
+        along += arc.length() / snake.length();
     }
+    let rest = if snake.is_closed() { tangent.dot(out.cross(first)).atan2(out.dot(first)) } else { 0.0 };
+    let section = |row: usize| {
+        let (j, part) = place(arcs.len(), per_arc, row);
+        let (arc, (out, before)) = (&arcs[j], starts[j]);
+        let (center, tangent) = (arc.point(part), arc.tangent(part));
+        let twist = rest * (before + part * arc.length() / snake.length());
+        let out = DMat3::from_axis_angle(tangent, twist) * transported(arc, out, part);
+        let aside = out.cross(tangent);
+        (0..around).map(move |k| {
+            let (sine, cosine) = (TAU * k as f64 / around as f64).sin_cos();
+            center + radius * (cosine * out + sine * aside)
+        })
+    };
+    let points = (0..rows).flat_map(section).collect();
     Grid::new(points, rows, around, [snake.is_closed(), true])
 }
 
 /// A vector across the start of an arc, taken along to a part of its length.
 fn transported(arc: &Arc, out: DVec3, part: f64) -> DVec3 {
     DMat3::from_axis_angle(arc.circle.normal, part * arc.angle_rad) * out
+}
+
+/// The arc of a sample along a snake, and at which part of its length; beyond the last arc its end.
+fn place(arc_count: usize, per_arc: usize, sample: usize) -> (usize, f64) {
+    match sample / per_arc {
+        j if j < arc_count => (j, (sample % per_arc) as f64 / per_arc as f64),
+        _ => (arc_count - 1, 1.0),
+    }
 }
 
 fn row_count(snake: &Snake, per_arc: usize) -> usize {
@@ -109,12 +112,13 @@ pub fn flat_lamellae(snake: &Snake, depth: f64, per_arc: usize) -> Result<Vec<Gr
     snake.arcs().iter().map(lamella).collect()
 }
 
-/// The lamella of a snake in given directions: in row 0 the points along the snake, `per_arc` intervals in each arc, in row 1 the same
-/// moved by `depth` at right angles to the snake, as `direction` leads from them. With the normals of a surface it stands on it.
+/// The lamella of a snake in given directions: in row 0 the points along the snake, `per_arc` intervals in each arc, in row 1 the
+/// same moved by `depth` at right angles to the snake, as `direction` leads from them. With the normals of a surface it stands on
+/// it.
 ///
 /// # Errors
-/// A depth of 0 or one that is not finite (`depth`), a direction that is not finite, 0, or along the snake (`direction`); no intervals or
-/// more than 65 536 (`per_arc`).
+/// A depth of 0 or one that is not finite (`depth`), a direction that is not finite, 0, or along the snake (`direction`); no
+/// intervals or more than 65 536 (`per_arc`).
 pub fn lamella(snake: &Snake, depth: f64, per_arc: usize, direction: &dyn Fn(DVec3) -> DVec3) -> Result<Grid> {
     check_intervals("per_arc", per_arc)?;
     if !(depth != 0.0 && depth.is_finite()) {
@@ -125,10 +129,8 @@ pub fn lamella(snake: &Snake, depth: f64, per_arc: usize, direction: &dyn Fn(DVe
     let (mut points, mut moved) = (Vec::with_capacity(2 * columns), Vec::with_capacity(columns));
     let arcs = snake.arcs();
     for k in 0..columns {
-        let (arc, part) = match arcs.get(k / per_arc) {
-            Some(arc) => (arc, (k % per_arc) as f64 / per_arc as f64),
-            None => (&arcs[arcs.len() - 1], 1.0),
-        };
+        let (j, part) = place(arcs.len(), per_arc, k);
+        let arc = &arcs[j];
         let (point, tangent) = (arc.point(part), arc.tangent(part));
         let across = check_direction("direction", direction(point))?.reject_from_normalized(tangent);
         if across.length() < ACROSS {
@@ -144,7 +146,7 @@ pub fn lamella(snake: &Snake, depth: f64, per_arc: usize, direction: &dyn Fn(DVe
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{PI, TAU};
+    use std::f64::consts::PI;
 
     use super::*;
     use crate::geometry::random::Random;

@@ -6,8 +6,8 @@
 //! c'' = κ_n n + κ_g (n × c'),   κ_n = II(c', c'),   κ_g = ± √(κ² − κ_n²),
 //! ```
 //!
-//! plus for a curve that turns left, seen from where `n` points. From a point and a direction there is one of either kind as long as
-//! `κ` is above `|κ_n|`, and none where it is below.
+//! plus for a curve that turns left, seen from where `n` points. From a point and a direction there is one of either kind as long
+//! as `κ` is above `|κ_n|`, and none where it is below.
 
 use std::fmt;
 
@@ -112,9 +112,10 @@ pub struct CurvatureCurve {
 ///
 /// # Errors
 /// Start or ranges that are not numbers, a start outside (`start`, `ranges`), a tangent without a direction on the surface
-/// (`tangent`), a length that is not above 0 (`course.length`), a number of steps out of range (`options.steps`), a curvature that is
-/// negative or not finite (`course.curvature`). Status `NoSolution`: the surface bends more than the curve may at the start already
-/// (`course.curvature`); where it does later, the curve found ends there. Status `Degenerate`: no tangent plane at the start (`start`).
+/// (`tangent`), a length that is not above 0 (`course.length`), a number of steps out of range (`options.steps`), a curvature that
+/// is negative or not finite (`course.curvature`). Status `NoSolution`: the surface bends more than the curve may at the start
+/// already (`course.curvature`); where it does later, the curve found ends there. Status `Degenerate`: no tangent plane at the
+/// start (`start`).
 pub fn curvature_curve(
     surface: &dyn Fn(f64, f64) -> SurfaceJet,
     ranges: [[f64; 2]; 2],
@@ -211,8 +212,7 @@ pub(super) fn check_start(jet: &SurfaceJet, state: &State, course: &Course<'_>) 
     match geodesic_curvature(jet, velocity(jet, state.rate), bend(jet, state.rate), curvature, course.length) {
         Err(End::NoSolution { curvature, normal_curvature }) => {
             let reason = format!(
-                "expected a curvature of at least {}, which the surface has in this direction at the start (length 0); found \
-                 {curvature}",
+                "expected at least {}, which the surface bends by in this direction at the start, the length 0; found {curvature}",
                 normal_curvature.abs()
             );
             Err(Error::new(Status::NoSolution, reason).at("course.curvature"))

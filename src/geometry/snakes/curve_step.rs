@@ -1,11 +1,11 @@
 //! A step along a curve of given curvature on a surface with two parameters.
 //!
 //! In parameters `c' = S_u u' + S_v v'` this is `A w' = κ_g (n × c') − q_t`, with `A = (S_u, S_v)`, `w = (u', v')` and `q_t` the
-//! tangential part of `q = S_uu u'² + 2 S_uv u' v' + S_vv v'²`. Its solution by the classical Runge–Kutta method is of fourth order in
-//! the step, as long as `κ` stays away from `|κ_n|`, where the root is not smooth. The paper's own scheme is of first order:
+//! tangential part of `q = S_uu u'² + 2 S_uv u' v' + S_vv v'²`. Its solution by the classical Runge–Kutta method is of fourth order
+//! in the step, as long as `κ` stays away from `|κ_n|`, where the root is not smooth. The paper's own scheme is of first order:
 //!
-//! Let `w` be the rates of a step and `w₁` those of the next, at the point between the two. With `w' ≈ (w₁ − w)/h` there, `t = A w` and
-//! the unit vector `t₁ = A w₁`, the curvature's square `|A w' + q|² = κ²` is linear in `t₁`:
+//! Let `w` be the rates of a step and `w₁` those of the next, at the point between the two. With `w' ≈ (w₁ − w)/h` there, `t = A w`
+//! and the unit vector `t₁ = A w₁`, the curvature's square `|A w' + q|² = κ²` is linear in `t₁`:
 //!
 //! ```text
 //! a·t₁ = ½ (h² (κ² − q·q) − 1 − t·t) + h q·t,   a = h q_t − t,
@@ -28,7 +28,8 @@ type Stepped<T> = std::result::Result<T, Refusal>;
 /// 1e-7 where there is none.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
-/// Or below the square of this over the length of the curve, which bends less than that in all: a plane has no curvature but round-off.
+/// Or below the square of this over the length of the curve, which bends less than that in all: a plane has no curvature but
+/// round-off.
 const FLAT: f64 = 1e-10;
 
 /// A point in parameters, and the parameters' derivatives by the arc length.

@@ -22,8 +22,8 @@ const CLOSED: f64 = 1e-6;
 /// Distances may be off by this after a step, as a multiple of the size.
 const OFF: f64 = 1e-11;
 
-/// A step is halved where meeting distances takes back more than this part of it, or where an end arc turns by more than this multiple
-/// of the angle given: the way turns sharply there. At most so often.
+/// A step is halved where meeting distances takes back more than this part of it, or where an end arc turns by more than this
+/// multiple of the angle given: the way turns sharply there. At most so often.
 const TAKEN_BACK: f64 = 0.3;
 const MOST_TURNED: f64 = 1.5;
 const HALVINGS: usize = 12;

@@ -1,8 +1,8 @@
 //! Around a triangle of a mesh, a smooth surface: a cubic height over its plane, fitted to the points around.
 //!
-//! In the frame of a triangle (its centroid, a side, its normal) the surface is `z = Σ c_ij x^i y^j` with `i + j ≤ 3`, by least squares
-//! with weights `exp(−r²/R²)`, where `R` is the distance of the farthest point and coordinates are in units of it. With edges of
-//! length `h` its height is then of fourth order and its curvature of second. Patches of neighbours differ by as much.
+//! In the frame of a triangle (its centroid, a side, its normal) the surface is `z = Σ c_ij x^i y^j` with `i + j ≤ 3`, by least
+//! squares with weights `exp(−r²/R²)`, where `R` is the distance of the farthest point and coordinates are in units of it. With
+//! edges of length `h` its height is then of fourth order and its curvature of second. Patches of neighbours differ by as much.
 
 use std::collections::BTreeSet;
 

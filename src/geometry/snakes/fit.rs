@@ -1,18 +1,18 @@
 //! A snake fitted to a curve (Bartoň et al. 2013, section 3.3).
 //!
-//! Each of `N` arcs of equal length stands for a part of the curve, and is as curved as the curve is there on average. Contacts begin
-//! evenly spaced on the curve, and a vertex halfway between where the tangents at its two contacts lead. Then
+//! Each of `N` arcs of equal length stands for a part of the curve, and is as curved as the curve is there on average. Contacts
+//! begin evenly spaced on the curve, and a vertex halfway between where the tangents at its two contacts lead. Then
 //!
 //! ```text
 //! Σ (|p_i − p_j| − d_ij)² + ν F_prox,
 //! F_prox = Σ_j mean_k [ (|o_j − c_jk| − r_j)² + (n_j · (c_jk − o_j))² ] + |p_0 − c_first|² + |p_{N+1} − c_last|²
 //! ```
 //!
-//! is minimised, `c_jk` being the points of the curve that belong to arc `j`, `o_j` its centre and `n_j` its unit normal. The paper has
-//! the first term of `F_prox` alone, which measures the distance to a sphere: the second makes it that to the circle, to first order.
-//! The last two keep arcs from gliding along a curve of constant curvature, which changes nothing else. Then `ν` is lowered, so that
-//! distances are met ever better, and in the end to round-off. With the lengths `a`, `b` that the edges at `p_j` are to have, `o` and
-//! `n` are polynomials in the control points:
+//! is minimised, `c_jk` being the points of the curve that belong to arc `j`, `o_j` its centre and `n_j` its unit normal. The paper
+//! has the first term of `F_prox` alone, which measures the distance to a sphere: the second makes it that to the circle, to first
+//! order. The last two keep arcs from gliding along a curve of constant curvature, which changes nothing else. Then `ν` is lowered,
+//! so that distances are met ever better, and in the end to round-off. With the lengths `a`, `b` that the edges at `p_j` are to
+//! have, `o` and `n` are polynomials in the control points:
 //!
 //! ```text
 //! o = p + (r / sin θ) ((p₋ − p)/a + (p₊ − p)/b),   n = (p − p₋) × (p₊ − p) / (a b sin θ).
@@ -34,8 +34,8 @@ use crate::mesh::curve::{Curve, Spacing, resample};
 /// Arcs of a snake at most: the deviation is looked for in all of them.
 const MOST_ARCS: usize = 10_000;
 
-/// What the weight of nearness is multiplied by, one minimisation after the other. With the paper's, which the first has, distances are
-/// off so much that meeting them would move arcs by more than they are off the curve.
+/// What the weight of nearness is multiplied by, one minimisation after the other. With the paper's, which the first has, distances
+/// are off so much that meeting them would move arcs by more than they are off the curve.
 const ROUNDS: [f64; 3] = [1.0, 1e-2, 1e-4];
 
 /// Into how many parts of a curve an arc's is divided.

@@ -1,8 +1,8 @@
 //! A snake with its end arcs on hinges: a linkage (Bartoň et al. 2013, section 4.2).
 //!
-//! The first two control points and the last two are fixed, so that each end arc turns about the edge where it is held, and there are
-//! `N + 5 − 10` freedoms: one for six arcs. Then all six arcs and the ground are links of a closed chain with seven hinges, the edges.
-//! A velocity of the free points keeps all distances to first order where `(p_i − p_j)·(v_i − v_j) = 0` for each of them.
+//! The first two control points and the last two are fixed, so that each end arc turns about the edge where it is held, and there
+//! are `N + 5 − 10` freedoms: one for six arcs. Then all six arcs and the ground are links of a closed chain with seven hinges, the
+//! edges. A velocity of the free points keeps all distances to first order where `(p_i − p_j)·(v_i − v_j) = 0` for each of them.
 
 use glam::DVec3;
 
@@ -11,8 +11,8 @@ use super::{Distance, Snake};
 use crate::error::{Error, Result, Status};
 use crate::linalg::dense::Svd;
 
-/// Equations count as dependent where a singular value is below this multiple of the largest: they are good to round-off, and what is
-/// nearly dependent is near a fork of the motion.
+/// Equations count as dependent where a singular value is below this multiple of the largest: they are good to round-off, and what
+/// is nearly dependent is near a fork of the motion.
 const DEPENDENT: f64 = 1e-9;
 
 /// A snake whose end arcs are held by hinges.
@@ -95,9 +95,9 @@ impl Linkage {
         polish(control, &self.distances, &|i| self.is_free(i), level)
     }
 
-    /// The determinant of the Plücker coordinates of the first six hinges of a linkage of six arcs, `u_i` and `k_i × u_i` with `u_i` the
-    /// unit vector from contact `k_i` to the vertex after it, moments in units of the snake's size. It is 0 in singular positions, in
-    /// which the last arc cannot be held without stopping all; below 1e-6 or so one is near.
+    /// The determinant of the Plücker coordinates of the first six hinges of a linkage of six arcs, `u_i` and `k_i × u_i` with
+    /// `u_i` the unit vector from contact `k_i` to the vertex after it, moments in units of the snake's size. It is 0 in singular
+    /// positions, in which the last arc cannot be held without stopping all; below 1e-6 or so one is near.
     ///
     /// # Errors
     /// Not six arcs (`snake`).

@@ -1,8 +1,8 @@
 //! Curves of given curvature on a triangle mesh (Bartoň et al. 2013, section 3.3).
 //!
-//! Over each triangle the mesh counts as the smooth surface fitted around it ([`FacePatch`]). Where a step has left the triangle, seen
-//! along its normal, its point and its direction are taken over by the patch over the edge: the point by dropping its height there,
-//! the direction by projection. Patches of neighbours differ by the fourth order of the edges only.
+//! Over each triangle the mesh counts as the smooth surface fitted around it. Where a step has left the triangle,
+//! seen along its normal, its point and its direction are taken over by the patch over the edge: the point by dropping its height
+//! there, the direction by projection. Patches of neighbours differ by the fourth order of the edges only.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -47,8 +47,8 @@ pub struct MeshCurve {
 /// normal does not count. Where it would leave the mesh over the boundary it ends there.
 ///
 /// # Errors
-/// As [`curvature_curve`](super::curvature_curve()), but for the start: one that is farther from the mesh than the longest edge of
-/// the nearest triangle (`start`, status `OutOfDomain`), or where the patch folds (`start`, status `Degenerate`).
+/// As [`curvature_curve`](super::curvature_curve::curvature_curve), but for the start: one that is farther from the mesh than the
+/// longest edge of the nearest triangle (`start`, status `OutOfDomain`), or where the patch folds (`start`, status `Degenerate`).
 pub fn mesh_curve(
     reference: &ReferenceMesh<'_>,
     start: DVec3,

@@ -1,10 +1,11 @@
 //! The motion of a linkage with one freedom, around until it comes back (Bartoň et al. 2013, section 4.2).
 //!
-//! Velocities `v` that keep distances are the multiples of one. A step goes along it, the way that the step before went, and so far that
-//! the faster one of the two end arcs turns by the angle given: which one that is changes on the way, as end arcs rock back and forth.
-//! The angular speed of the first is `|v_2|` over the distance of `p_2` from the line of `p_0` and `p_1`. (The paper compares `|v_2|` and
-//! `|v_{N−1}|` themselves, which are angular speeds only up to these distances.) After each step points are moved onto the shape space to
-//! round-off, so that no error adds up: positions are a curve, and however many steps are taken, they are on it.
+//! Velocities `v` that keep distances are the multiples of one. A step goes along it, the way that the step before went, and so far
+//! that the faster one of the two end arcs turns by the angle given: which one that is changes on the way, as end arcs rock back
+//! and forth. The angular speed of the first is `|v_2|` over the distance of `p_2` from the line of `p_0` and `p_1`. (The paper
+//! compares `|v_2|` and `|v_{N−1}|` themselves, which are angular speeds only up to these distances.) After each step points are
+//! moved onto the shape space to round-off, so that no error adds up: positions are a curve, and however many steps are taken, they
+//! are on it.
 //!
 //! The cycle is complete where the curve crosses the hyperplane through the first position `x⁰` across the first velocity `v⁰` from
 //! behind, near `x⁰` and after having been away. The crossing is found to round-off, and how far it is from `x⁰` tells whether the
@@ -70,8 +71,8 @@ pub struct Motion {
     pub linkage: Linkage,
     /// The control points at each position, the start first; a closed motion does not repeat it.
     pub frames: Vec<Vec<DVec3>>,
-    /// By how much the first and the last arc are turned at each position, in radians, counterclockwise about the directions from `p_0`
-    /// to `p_1` and from `p_N` to `p_{N+1}`; whole turns count.
+    /// By how much the first and the last arc are turned at each position, in radians, counterclockwise about the directions from
+    /// `p_0` to `p_1` and from `p_N` to `p_{N+1}`; whole turns count.
     pub angles_rad: Vec<[f64; 2]>,
     /// How far the end arcs have turned when a closed motion is at its start again: whole turns, 0 of one that rocks.
     pub turns: [i32; 2],
@@ -88,8 +89,8 @@ pub struct Motion {
 /// Moves a linkage until it is back where it began. `progress` is called before each step and can end the run.
 ///
 /// # Errors
-/// Options out of their ranges (`options.step_rad`, `options.max_steps`). A linkage that cannot move, or in several independent ways as
-/// one of more than six arcs (`linkage`, status `InvalidValue`); one of six arcs that is in a singular position (`linkage`,
+/// Options out of their ranges (`options.step_rad`, `options.max_steps`). A linkage that cannot move, or in several independent
+/// ways as one of more than six arcs (`linkage`, status `InvalidValue`); one of six arcs that is in a singular position (`linkage`,
 /// status `Degenerate`).
 pub fn cycle(
     linkage: &Linkage,
@@ -181,9 +182,9 @@ impl Motion {
         Ok((0..contacts[0].len()).map(|j| contacts.iter().map(|contacts| contacts[j]).collect()).collect())
     }
 
-    /// The control points at each phase: 0 is the start, 1 the start again, or the last position of a motion that has not closed. Phases
-    /// go with the length of the way in the space of all positions. Of a closed motion those beyond 0 to 1 are taken around it, of
-    /// another the nearer end. Between two frames points are interpolated, and moved so that distances hold to round-off.
+    /// The control points at each phase: 0 is the start, 1 the start again, or the last position of a motion that has not closed.
+    /// Phases go with the length of the way in the space of all positions. Of a closed motion those beyond 0 to 1 are taken around
+    /// it, of another the nearer end. Between two frames points are interpolated, and moved so that distances hold to round-off.
     ///
     /// # Errors
     /// A phase that is not finite (`phases[i]`).

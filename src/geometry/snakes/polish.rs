@@ -1,10 +1,10 @@
 //! Control points onto the shape space to round-off.
 //!
-//! The paper's functional leaves distances off by 1e-4 to 1e-3 of them. Newton's method on the distances alone ends that: with `r` by
-//! how much they are off and `J` their derivatives, each step is the shortest `d` with `J d = −r`, so that points hardly move. It is
-//! found by damping: `(JᵀJ + ε I) d = −Jᵀ r`, which leads to the shortest as `ε` goes to 0, also where rows of `J` depend on each
-//! other. What the damping leaves of `r` goes with the next step. (To damp by the diagonal of `JᵀJ` would let points go far along
-//! axes that edges are nearly at right angles to.)
+//! The paper's functional leaves distances off by 1e-4 to 1e-3 of them. Newton's method on the distances alone ends that: with `r`
+//! by how much they are off and `J` their derivatives, each step is the shortest `d` with `J d = −r`, so that points hardly move.
+//! It is found by damping: `(JᵀJ + ε I) d = −Jᵀ r`, which leads to the shortest as `ε` goes to 0, also where rows of `J` depend on
+//! each other. What the damping leaves of `r` goes with the next step. (To damp by the diagonal of `JᵀJ` would let points go far
+//! along axes that edges are nearly at right angles to.)
 
 use glam::DVec3;
 

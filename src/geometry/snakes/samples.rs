@@ -8,8 +8,8 @@ use crate::mesh::grid::{check_finite, diagonal};
 /// Neighbouring points count as one below this multiple of the points' extent.
 const REPEATED: f64 = 1e-12;
 
-/// A curve through points. Between two it is as long as an arc of the mean of the curvatures there; the curvature at a point is that of
-/// the circle through it and its neighbours, and changes linearly from point to point.
+/// A curve through points. Between two it is as long as an arc of the mean of the curvatures there; the curvature at a point is
+/// that of the circle through it and its neighbours, and changes linearly from point to point.
 pub(super) struct Samples<'a> {
     points: &'a [DVec3],
     lengths: Vec<f64>,

@@ -10,8 +10,8 @@ use crate::mesh::grid::{Grid, check_finite};
 pub(super) const MOST_INTERVALS: usize = 1 << 16;
 
 /// The grid that the positions of a snake make, in row `i` the points along the snake at position `i`, each arc divided into
-/// `per_arc` intervals. Where two arcs meet, tangents agree, so that rows are smooth curves. Rows wrap if the snake is closed, columns
-/// if `comes_back`: the last position is followed by the first. All quads are there, see [`Grid::mesh`].
+/// `per_arc` intervals. Where two arcs meet, tangents agree, so that rows are smooth curves. Rows wrap if the snake is closed,
+/// columns if `comes_back`: the last position is followed by the first. All quads are there, see [`Grid::mesh`].
 ///
 /// # Errors
 /// Fewer than 2 positions, or 3 that come back (`frames`), one with another number of control points or with coordinates that are
@@ -58,8 +58,8 @@ pub struct ArcKind {
     pub arcs: Vec<usize>,
 }
 
-/// The different arcs among `arcs`, as of one snake ([`Snake::shapes`]) or of many, in the order in which each comes first. Arcs count
-/// as one if radii and lengths are both within `tolerance` of the first's, relative to its.
+/// The different arcs among `arcs`, as of one snake ([`Snake::shapes`]) or of many, in the order in which each comes first. Arcs
+/// count as one if radii and lengths are both within `tolerance` of the first's, relative to its.
 ///
 /// All positions of an evolving snake have the same arcs: those of `n` positions are the kinds of one, each `n` times.
 ///

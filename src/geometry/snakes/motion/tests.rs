@@ -87,8 +87,8 @@ fn copies_are_positions_of_the_motion() {
         let nearest = motion.frames.iter().map(|frame| apart(frame, &moved)).fold(f64::INFINITY, f64::min);
         assert!(nearest < 0.1, "{nearest}");
     }
-    // Once around is the start again, and phases are even: neighbours are a hundredth of the way apart, or a little less where the way
-    // turns sharply.
+    // Once around is the start again, and phases are even: neighbours are a hundredth of the way apart, or a little less where the
+    // way turns sharply.
     let phases: Vec<f64> = (0..=100).map(|i| f64::from(i) / 100.0).collect();
     let all = motion.at_phases(&phases).unwrap();
     assert!(apart(&all[0], &motion.frames[0]) < 1e-14 && apart(&all[100], &all[0]) < 1e-13);
