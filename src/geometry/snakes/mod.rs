@@ -15,16 +15,31 @@
 //! dimension `N + 5`, or `N` if the snake is closed with at least 6 arcs; an open one that has to stay on a surface keeps 3 freedoms.
 
 mod arc;
+mod congruence;
+pub mod covering;
+pub mod curvature_curve;
+mod curve_step;
+pub mod cycle;
+mod drive;
 pub mod evolution;
+mod face_patch;
+pub mod fit;
 pub mod freedoms;
 pub mod functionals;
+mod linkage;
+pub mod mesh_curve;
 mod motion;
+mod polish;
 pub mod projection;
 pub mod rails;
+mod samples;
 mod snake;
+pub mod sweep;
 #[cfg(test)]
 mod tests;
 pub mod velocity;
 
 pub use arc::Arc;
+pub use congruence::{Congruence, congruence};
+pub use linkage::Linkage;
 pub use snake::{ArcShape, Distance, Pose, Snake};
