@@ -2,8 +2,7 @@
 
 mod program;
 
-use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
@@ -11,7 +10,10 @@ use shapeop::geometry::canal::file::PartsForm;
 use shapeop::geometry::canal::surface::SuperCanal;
 use shapeop::mesh::{Grid, Mesh, file, measure};
 
-use program::{Folder, json as read_json, png_size, refused, repository, said, shapeop, shapeop_into};
+use program::{
+    Folder, commands_of, json as read_json, png_size, refused, repository, run_line, said, shapeop, shapeop_into,
+    workplace,
+};
 
 fn curve(name: &str) -> String {
     repository().join("examples/canal").join(name).display().to_string()
@@ -575,14 +577,8 @@ fn what_is_wrong_is_named_with_its_file_and_line() {
 }
 
 /// A folder with the examples, and the files that examples of the help name.
-fn workplace(name: &str) -> Folder {
-    let folder = Folder::new(name);
-    let examples = folder.path("examples/canal");
-    std::fs::create_dir_all(&examples).unwrap();
-    for entry in std::fs::read_dir(repository().join("examples/canal")).unwrap() {
-        let path = entry.unwrap().path();
-        std::fs::copy(&path, examples.join(path.file_name().unwrap())).unwrap();
-    }
+fn canal_workplace(name: &str) -> Folder {
+    let folder = workplace(name, "canal");
     folder.write("net.obj", &two_components());
     folder.write("chain.json", r#"[{"scaling": 2}, {"inversion": {"center": [9, 1, 0], "ratio": 4}}]"#);
     let factors = json!({"column": vec![1.2; 16], "row": vec![0.9; 23]});
@@ -592,16 +588,9 @@ fn workplace(name: &str) -> Folder {
     folder
 }
 
-#[track_caller]
-fn run_line(folder: &Path, line: &str) -> Output {
-    let mut words = line.split_whitespace();
-    assert_eq!(words.next(), Some("shapeop"), "{line}");
-    Command::new(env!("CARGO_BIN_EXE_shapeop")).args(words).current_dir(folder).output().unwrap()
-}
-
 #[test]
 fn the_examples_of_the_help_run() {
-    let folder = workplace("canal-help");
+    let folder = canal_workplace("canal-help");
     let commands = [
         "revolution",
         "moulding",
@@ -623,16 +612,14 @@ fn the_examples_of_the_help_run() {
         let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("  shapeop ")).collect();
         assert!(text.contains("Examples:") && !lines.is_empty(), "{command}");
         for line in lines {
-            let output = run_line(&folder.0, line.trim());
-            assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
+            run_line(&folder, line, &[]);
         }
     }
     // An example and, some spaces further, what it does.
     let text = help(&["canal", "--help"]);
     for line in text.lines().filter(|line| line.starts_with("  shapeop ")) {
         let line = line.trim().split("   ").next().unwrap();
-        let output = run_line(&folder.0, line.split("  ").next().unwrap());
-        assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
+        run_line(&folder, line.split("  ").next().unwrap(), &[]);
     }
 }
 
@@ -643,15 +630,11 @@ fn help(arguments: &[&str]) -> String {
 
 #[test]
 fn the_commands_of_the_documentation_run() {
-    let folder = workplace("canal-docs");
-    let text = std::fs::read_to_string(repository().join("docs/canal.md")).unwrap();
-    let blocks = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
-    let lines: Vec<&str> = blocks.flat_map(str::lines).filter(|line| line.starts_with("shapeop ")).collect();
+    let folder = canal_workplace("canal-docs");
+    let lines = commands_of("docs/canal.md");
     assert!(lines.len() >= 10, "{}", lines.len());
     for line in lines {
-        let line = line.split(" #").next().unwrap();
-        let output = run_line(&folder.0, line);
-        assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
+        run_line(&folder, &line, &[]);
     }
 }
 

@@ -6,9 +6,8 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use shapeop::mesh::patterns::parametric_surface;
-use shapeop::mesh::{Mesh, file};
 
-use program::{Folder, refused, repository, said, shapeop, shapeop_into};
+use program::{Folder, obj, refused, repository, said, shapeop, shapeop_into};
 
 fn example(name: &str) -> String {
     repository().join("examples/ruled").join(name).display().to_string()
@@ -17,10 +16,6 @@ fn example(name: &str) -> String {
 fn sphere() -> String {
     let at = |u: f64, v: f64| 2.0 * DVec3::new(u.cos() * v.cos(), u.sin() * v.cos(), v.sin());
     obj(&parametric_surface(21, 15, [0.0, 2.0], [-0.7, 0.7], at).unwrap())
-}
-
-fn obj(mesh: &Mesh) -> String {
-    String::from_utf8(file::encode(mesh, file::Format::Obj).unwrap()).unwrap()
 }
 
 #[test]

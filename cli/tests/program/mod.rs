@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
+use shapeop::mesh::{Mesh, file};
 
 pub fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -60,6 +61,41 @@ pub fn shapeop(arguments: &[&str]) -> Output {
 pub fn shapeop_into(folder: &Folder, arguments: &[&str]) -> Output {
     let out = folder.0.display().to_string();
     shapeop(&[arguments, &["-o", &out]].concat())
+}
+
+/// A folder with the examples of an area, where commands of its help and documentation find them.
+pub fn workplace(name: &str, area: &str) -> Folder {
+    let folder = Folder::new(name);
+    let examples = folder.path("examples").join(area);
+    std::fs::create_dir_all(&examples).unwrap();
+    for entry in std::fs::read_dir(repository().join("examples").join(area)).unwrap() {
+        let path = entry.unwrap().path();
+        std::fs::copy(&path, examples.join(path.file_name().unwrap())).unwrap();
+    }
+    folder
+}
+
+/// Runs a line as someone would type it, with further options.
+#[track_caller]
+pub fn run_line(folder: &Folder, line: &str, options: &[&str]) {
+    let mut words = line.split_whitespace();
+    assert_eq!(words.next(), Some("shapeop"), "{line}");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_shapeop"));
+    let output = command.args(words).args(options).current_dir(&folder.0).output().unwrap();
+    assert!(output.status.success(), "{line}\n{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The lines of a document's shell blocks that call the program.
+pub fn commands_of(document: &str) -> Vec<String> {
+    let text = std::fs::read_to_string(repository().join(document)).unwrap();
+    let blocks = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let lines = blocks.flat_map(str::lines).filter(|line| line.starts_with("shapeop "));
+    lines.map(|line| line.split(" #").next().unwrap_or_default().to_owned()).collect()
+}
+
+/// A mesh as the text of an OBJ file.
+pub fn obj(mesh: &Mesh) -> String {
+    String::from_utf8(file::encode(mesh, file::Format::Obj).unwrap()).unwrap()
 }
 
 #[track_caller]

@@ -11,10 +11,10 @@ use super::design::ShapeOpRuled;
 use super::guard;
 use super::io::{self, Outputs, placed};
 use crate::error::{Error, Result, Status};
+use crate::geometry::ruled::Axis;
 use crate::geometry::ruled::boundaries::{BoundaryOptions, Drawn};
 use crate::geometry::ruled::great_circles::great_circle;
 use crate::geometry::ruled::planar_boundaries::{PlanarOptions, Plane};
-use crate::geometry::ruled::spherical_image::Axis;
 
 /// What is done to strip boundaries. Start from `shapeop_ruledDefaultBoundaryOptions`.
 #[derive(Clone, Copy, Debug)]

@@ -4,14 +4,14 @@ use std::ops::ControlFlow;
 
 use glam::{DVec2, DVec3};
 
-use super::Field;
 use super::asymptotic::{self, AsymptoticDirections};
 use super::boundaries::BoundaryOptions;
 use super::great_circles::{great_circle, great_circle_boundaries};
 use super::level_function::{LevelFunction, LevelOptions, LevelWeights, level_function};
 use super::level_terms::{Jumps, TermWeights, Terms};
 use super::orientation;
-use super::spherical_image::{Axis, ImageKind, SphericalImage};
+use super::spherical_image::{ImageKind, SphericalImage};
+use super::{Axis, Field};
 use crate::error::Status;
 use crate::linalg::gauss_newton::{self, Progress, Stop};
 use crate::mesh::level_curves::level_curves;

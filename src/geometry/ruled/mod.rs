@@ -15,6 +15,7 @@
 //! [single] strip between two curves is the least that there is.
 
 pub mod asymptotic;
+mod axis;
 pub mod boundaries;
 #[cfg(test)]
 mod boundaries_tests;
@@ -57,6 +58,7 @@ pub mod tracing;
 pub mod trim;
 pub mod zebra;
 
+pub use axis::Axis;
 pub use boundary::Boundary;
 pub use bounds::Bounds;
 pub use field::Field;

@@ -18,9 +18,8 @@ pub mod sheet;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::strip::Strip;
+use super::{Axis, Strip};
 use crate::error::{Error, Result, Status};
-use crate::linalg::dense::Svd;
 use crate::mesh::curve::Curve;
 use outline::outline;
 
@@ -41,7 +40,7 @@ const NO_SLAB: f64 = 1e-9;
 
 /// The axis of a strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
+pub struct StripAxis {
     /// The unit vector that is most nearly at right angles to all rulings, so that the strip rises along it from its first ruling
     /// to its last.
     pub direction: DVec3,
@@ -53,19 +52,17 @@ pub struct Axis {
 ///
 /// # Errors
 /// Status `Degenerate`: all rulings are parallel, or have no length; the place is `strip`.
-pub fn axis(strip: &Strip) -> Result<Axis> {
+pub fn axis(strip: &Strip) -> Result<StripAxis> {
     let degenerate = |reason: &str| Error::new(Status::Degenerate, reason).at("strip");
     let directions: Vec<DVec3> =
         strip.control(0).iter().zip(strip.control(1)).filter_map(|(a, b)| (*b - *a).try_normalize()).collect();
-    let columns = [0, 1, 2].map(|k| directions.iter().map(|direction| direction[k]).collect());
-    let svd = if directions.len() < 3 { None } else { Svd::new(directions.len(), &columns) };
-    let svd = svd.ok_or_else(|| degenerate("expected at least 3 rulings with a length"))?;
-    let [first, second] = [0, 1].map(|k| svd.singular_values()[k]);
-    if second <= PARALLEL * first {
+    let found = if directions.len() < 3 { None } else { Axis::new(&directions) };
+    let found = found.ok_or_else(|| degenerate("expected at least 3 rulings with a length"))?;
+    if found.spread <= PARALLEL {
         return Err(degenerate("expected rulings of several directions, which have one axis, found all parallel"));
     }
-    let direction = upward(strip, DVec3::from_slice(&svd.least_vector()).normalize());
-    Ok(Axis { direction, deviation_deg: deviation_deg(strip, direction).0 })
+    let direction = upward(strip, found.direction.normalize());
+    Ok(StripAxis { direction, deviation_deg: deviation_deg(strip, direction).0 })
 }
 
 /// The greatest angle between a control ruling and the plane across `axis`, in degrees, and its number.

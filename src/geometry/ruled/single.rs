@@ -4,13 +4,12 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::Strip;
 use super::conditions::Condition;
 use super::layout::Joints;
 use super::optimise::{Optimised, Options, Progress, Task, optimise};
 use super::start::{Rulings, StartOptions, start};
+use super::{Axis, Strip};
 use crate::error::{Error, Result, Status};
-use crate::linalg::small::{least_eigenvector, scatter};
 use crate::mesh::reference::ReferenceSurface;
 
 /// Rulings in each span of which the axis is found.
@@ -104,11 +103,8 @@ fn directions(strip: &Strip) -> Vec<DVec3> {
 /// # Errors
 /// Status `Degenerate`: no ruling has a length; the place is `strip`.
 pub fn axis(strip: &Strip) -> Result<DVec3> {
-    let directions = directions(strip);
-    if directions.is_empty() {
-        return Err(Error::new(Status::Degenerate, "expected rulings of a length above 0").at("strip"));
-    }
-    Ok(least_eigenvector(scatter(directions.into_iter())))
+    let none = || Error::new(Status::Degenerate, "expected rulings of a length above 0").at("strip");
+    Axis::new(&directions(strip)).map(|axis| axis.direction).ok_or_else(none)
 }
 
 /// The root mean square of the angles, in radians, of the rulings of a strip to the planes across a unit axis; 0 where none has a

@@ -17,13 +17,12 @@
 
 use glam::DVec3;
 
-use super::Field;
 use super::level_terms::Metric;
+use super::{Axis, Field};
 use crate::error::{Error, Result, Status};
-use crate::linalg::dense::Svd;
 use crate::mesh::TriangleMesh;
 use crate::mesh::operators::{gradients_of_corners, mixed_parts};
-use crate::mesh::triangles::{SurfacePoint, blend};
+use crate::mesh::triangles::blend;
 
 /// An image with `ρ` below this has collapsed.
 const COLLAPSED: f64 = 0.03;
@@ -75,17 +74,6 @@ pub struct ImageReport {
 pub struct SphericalImage {
     report: ImageReport,
     pub(super) metric: Metric,
-}
-
-/// A direction that all of some unit vectors are nearly orthogonal to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
-    /// The direction, a unit vector up to its sign.
-    pub direction: DVec3,
-    /// The root mean square of `a·w`: the sine of the angle to the plane, about.
-    pub error: f64,
-    /// The least singular value over the largest.
-    pub flatness: f64,
 }
 
 impl SphericalImage {
@@ -171,31 +159,4 @@ fn extent(mesh: &TriangleMesh, known: &[usize], corners: impl Fn(usize) -> [DVec
         squares += mesh.area(t) * 0.5 * (sum + (sum * sum - 4.0 * product * product).max(0.0).sqrt());
     }
     if squares > 0.0 { areas / squares } else { 0.0 }
-}
-
-impl Axis {
-    /// The axis of some unit vectors; none without any, or if they are not finite.
-    pub fn new(directions: &[DVec3]) -> Option<Self> {
-        let column = |k: usize| directions.iter().map(|a| a[k]).collect::<Vec<f64>>();
-        let svd = Svd::new(directions.len(), &[column(0), column(1), column(2)])?;
-        let s = svd.singular_values();
-        let direction = DVec3::from_slice(&svd.least_vector());
-        let (first, last) = (*s.first()?, s.get(2).copied().unwrap_or(0.0));
-        let squares: f64 = directions.iter().map(|a| a.dot(direction).powi(2)).sum();
-        let error = (squares / directions.len() as f64).sqrt();
-        Some(Self { direction, error, flatness: if first > 0.0 { last / first } else { 0.0 } })
-    }
-
-    /// The axis of the field at some points of its mesh; points where it is not known are left out. For a strip, give the points of
-    /// both boundaries.
-    pub fn of_points(mesh: &TriangleMesh, field: &Field, points: &[SurfacePoint]) -> Option<Self> {
-        field.check(mesh).ok()?;
-        let direction = |at: &SurfacePoint| {
-            let corners = mesh.triangles().get(at.triangle as usize)?.map(|i| i as usize);
-            let is_known = (0..3).all(|k| at.weights[k] == 0.0 || field.is_known()[corners[k]]);
-            let blended = blend(corners.map(|i| field.directions()[i]), at.weights);
-            if is_known { blended.try_normalize() } else { None }
-        };
-        Self::new(&points.iter().filter_map(direction).collect::<Vec<_>>())
-    }
 }

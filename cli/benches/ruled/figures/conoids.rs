@@ -6,6 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use glam::DVec3;
+use shapeop::geometry::ruled::Axis;
 use shapeop::geometry::ruled::boundaries::Levels;
 use shapeop::geometry::ruled::design::Design;
 use shapeop::geometry::ruled::level_function::LevelWeights;
@@ -13,7 +14,6 @@ use shapeop::geometry::ruled::planks::sheet::sheet;
 use shapeop::geometry::ruled::planks::{Plank, PlankOptions, Planks, planks};
 use shapeop::geometry::ruled::report::{Report, ReportOptions, report};
 use shapeop::geometry::ruled::single::{Single, SingleOptions, single};
-use shapeop::geometry::ruled::spherical_image::Axis;
 use shapeop::geometry::ruled::start::Rulings;
 use shapeop::geometry::ruled::trim::trim;
 use shapeop::mesh::patterns::parametric_surface;

@@ -5,11 +5,11 @@ use std::ops::ControlFlow;
 use anyhow::{Context, Result};
 use glam::DVec3;
 use shapeop::error::Status;
-use shapeop::geometry::ruled::Field;
 use shapeop::geometry::ruled::asymptotic::{AsymptoticDirections, Options};
 use shapeop::geometry::ruled::level_function::{LevelOptions, LevelWeights, level_function};
 use shapeop::geometry::ruled::orientation;
-use shapeop::geometry::ruled::spherical_image::{Axis, ImageKind, SphericalImage};
+use shapeop::geometry::ruled::spherical_image::{ImageKind, SphericalImage};
+use shapeop::geometry::ruled::{Axis, Field};
 use shapeop::mesh::level_curves::level_curves;
 use shapeop::mesh::{SurfacePoint, TriangleMesh};
 

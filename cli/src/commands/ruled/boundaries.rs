@@ -5,11 +5,12 @@ use std::ops::ControlFlow;
 use anyhow::Result;
 use glam::DVec3;
 use shapeop::error::{Error, Status};
+use shapeop::geometry::ruled::Axis;
 use shapeop::geometry::ruled::boundaries::{BoundaryOptions, Drawn, Levels};
 use shapeop::geometry::ruled::design::Design;
 use shapeop::geometry::ruled::level_function::LevelOptions;
 use shapeop::geometry::ruled::planar_boundaries::{PlanarOptions, Plane};
-use shapeop::geometry::ruled::spherical_image::{Axis, ImageKind};
+use shapeop::geometry::ruled::spherical_image::ImageKind;
 use shapeop::mesh::SurfacePoint;
 
 use super::asked::{Asked, LEVELS};

@@ -2,6 +2,7 @@ use glam::DVec2;
 
 use super::*;
 use crate::geometry::ruled::trim::tests::straight;
+use crate::linalg::dense::Svd;
 use crate::mesh::curve::CubicBasis;
 
 /// The strip with these boundaries, interpolated at the Greville abscissae.
