@@ -10,10 +10,10 @@ use glam::DVec3;
 
 use super::Snake;
 use super::functionals::Row;
-use super::motion::Motion;
+use super::motion::{Failure, Motion, State};
 use super::projection;
 use super::rails::{self, OnRail, Rail};
-use super::velocity::check_rows;
+use super::velocity::{Admissible, check_rows};
 use crate::error::{Error, Result, Status};
 use crate::mesh::ReferenceSurface;
 
@@ -257,6 +257,24 @@ pub fn evolve(
     let mut run = Run::new(motion, on_rails);
     let stop = run.run(progress)?;
     Ok(Evolution { frames: run.into_frames(), stop })
+}
+
+/// The velocities with which [`evolve`] begins.
+///
+/// # Errors
+/// As [`evolve`]; as [`super::velocity::velocity`].
+pub fn velocity(task: &Task<'_>, options: &Options) -> Result<Admissible> {
+    check(task, options)?;
+    let on_rails = rails::start(task.snake, task.rails)?;
+    let motion = Motion::new(task, options, &on_rails);
+    match motion.velocity(&State { snake: task.snake.clone(), rails: on_rails }) {
+        Ok(rates) => Ok(rates.velocity),
+        Err(Failure::Refused(error)) => Err(error),
+        Err(Failure::Rail(k, _)) => {
+            let reason = "expected a gliding rail that crosses the snake, found one along it";
+            Err(Error::new(Status::Degenerate, reason).at(format!("rails[{k}]")))
+        }
+    }
 }
 
 fn check(task: &Task<'_>, options: &Options) -> Result<()> {

@@ -20,6 +20,7 @@ pub mod covering;
 pub mod curvature_curve;
 mod curve_step;
 pub mod cycle;
+pub mod draft;
 mod drive;
 pub mod evolution;
 mod face_patch;
