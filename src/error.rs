@@ -19,15 +19,15 @@ pub enum Status {
     UnmatchingConstraintId = 3,
     /// A number is outside its domain, or not finite.
     InvalidValue = 16,
-    /// A point index is out of range.
+    /// An index is out of range.
     IndexOutOfRange = 17,
     /// The id is no live force of that kind.
     UnmatchingForceId = 18,
-    /// The solver was not initialised.
+    /// What is asked for was not prepared yet: a solver was not initialised, or nothing was found that could be told.
     NotInitialised = 19,
     /// A force acts along a motion that no constraint resists.
     Unbounded = 20,
-    /// The solver is being solved.
+    /// Another call is using the object.
     Busy = 21,
     /// The handle is null, stale or foreign.
     InvalidHandle = 22,
@@ -52,7 +52,7 @@ pub enum Status {
     NoIntersection = 31,
     /// No solution exists for this input.
     NoSolution = 32,
-    /// Opposite edges of a quad are parallel where the fourth corner is found by meeting them.
+    /// Equations do not determine an answer: edges of a quad that are to meet are parallel, or derivatives lose rank.
     Singular = 33,
     /// A ring does not close.
     NotClosed = 34,
@@ -107,12 +107,12 @@ impl Status {
             Self::InvalidArgumentLength => "a count does not fit",
             Self::UnmatchingConstraintId => "the id is no constraint of that type",
             Self::InvalidValue => "a number is outside its domain or not finite",
-            Self::IndexOutOfRange => "a point index is out of range",
+            Self::IndexOutOfRange => "an index is out of range",
             Self::UnmatchingForceId => "the id is no force of that kind",
-            Self::NotInitialised => "the solver was not initialised",
+            Self::NotInitialised => "something must come first: a solver is not initialised, or nothing was found yet",
             Self::Unbounded => "a force acts along a motion that no constraint resists",
-            Self::Busy => "the solver is being solved",
-            Self::InvalidHandle => "the handle is null, was deleted, or never was a solver",
+            Self::Busy => "another call is using the object",
+            Self::InvalidHandle => "the handle is null, was deleted, or never was one of such an object",
             Self::NullPointer => "a required pointer is null",
             Self::InvalidInput => "the input could not be read",
             Self::TooLarge => "the problem is too large for this machine",
@@ -123,7 +123,7 @@ impl Status {
             Self::Degenerate => "the input is in a special position where no answer is defined",
             Self::NoIntersection => "two shapes that must meet do not",
             Self::NoSolution => "no solution exists",
-            Self::Singular => "the edges that must meet are parallel",
+            Self::Singular => "equations do not determine an answer, as where edges that must meet are parallel",
             Self::NotClosed => "the ring does not close",
             Self::NotManifold => "the mesh is no oriented surface",
             Self::CurvatureSign => "the surface is not negatively curved",

@@ -1,11 +1,12 @@
 //! From pointers and counts to slices, texts and ids: each checked for what can be checked, with the argument's name.
 
 use std::borrow::Cow;
-use std::ffi::{CStr, c_char, c_int};
+use std::ffi::{CStr, c_char, c_int, c_uint};
 use std::{ptr, slice};
 
 use glam::DVec3;
 
+use super::c_count;
 use crate::constraints::ConstraintId;
 use crate::error::{Error, Result, Status};
 
@@ -197,4 +198,36 @@ pub(super) fn renamed(error: Error, from: &str, to: &str) -> Error {
         Some(rest) if rest.is_empty() || rest.starts_with('[') => error.with_place(format!("{to}{rest}")),
         _ => error,
     }
+}
+
+/// The error with the names of C's arguments in its place: the first pair whose first name begins it counts.
+pub(super) fn placed(error: Error, names: &[(&str, &str)]) -> Error {
+    let found = names.iter().find_map(|(from, to)| Some(format!("{to}{}", error.place().strip_prefix(from)?)));
+    match found {
+        Some(place) => error.with_place(place),
+        None => error,
+    }
+}
+
+/// A number from `least` to `most`.
+pub(super) fn count(name: &str, value: c_int, least: usize, most: usize) -> Result<usize> {
+    usize::try_from(value)
+        .ok()
+        .filter(|count| (least..=most).contains(count))
+        .ok_or_else(|| Error::new(Status::InvalidValue, format!("expected {least} to {most}, found {value}")).at(name))
+}
+
+/// As [`count`], of a field of a struct.
+pub(super) fn unsigned(name: &str, value: c_uint, least: usize, most: usize) -> Result<usize> {
+    count(name, c_int::try_from(value).unwrap_or(c_int::MAX), least, most)
+}
+
+/// Indices as ints.
+pub(super) fn ints(indices: impl IntoIterator<Item = usize>) -> Result<Vec<c_int>> {
+    indices.into_iter().map(c_count).collect()
+}
+
+/// A count as a field of a struct.
+pub(super) fn field(count: usize) -> c_uint {
+    c_uint::try_from(count).unwrap_or(c_uint::MAX)
 }

@@ -26,17 +26,17 @@ pub enum shapeop_err {
     SO_UNMATCHING_CONSTRAINT_ID = 3,
     /// A number is outside its domain, or not finite.
     SO_INVALID_VALUE = 16,
-    /// A point index is out of range.
+    /// An index is out of range.
     SO_INDEX_OUT_OF_RANGE = 17,
     /// The id is no force of that kind.
     SO_UNMATCHING_FORCE_ID = 18,
-    /// The solver was not initialised.
+    /// Another call must come first: a solver is not initialised, or nothing was found yet that could be told.
     SO_NOT_INITIALISED = 19,
     /// A force acts along a motion that no constraint resists.
     SO_UNBOUNDED = 20,
-    /// Another call is using the solver.
+    /// Another call is using the solver, surface, design or snake.
     SO_BUSY = 21,
-    /// The handle is null, was deleted, or never was a solver's.
+    /// The handle is null, was deleted, or never was one of such an object.
     SO_INVALID_HANDLE = 22,
     /// A required pointer is null.
     SO_NULL_POINTER = 23,
@@ -58,7 +58,7 @@ pub enum shapeop_err {
     SO_NO_INTERSECTION = 31,
     /// No solution exists for this input.
     SO_NO_SOLUTION = 32,
-    /// Opposite edges of a quad are parallel where the fourth corner is found by meeting them.
+    /// Equations do not determine an answer: edges of a quad that are to meet are parallel, or derivatives lose rank.
     SO_SINGULAR = 33,
     /// A ring does not close.
     SO_NOT_CLOSED = 34,

@@ -1,4 +1,4 @@
-//! Handles: small integers that name a solver, a surface or a design, or are recognised as naming none.
+//! Handles: small integers that name a solver, a surface, a design or a snake, or are recognised as naming none.
 //!
 //! A handle is `generation << 16 | index`: nonzero, below 2^31, so it survives a caller that cuts it to a C `int`. It
 //! is read back from the low 32 bits alone, because the upper half of a register that was loaded as an `int` is not
@@ -13,6 +13,7 @@ use super::{current, messages::Message};
 use crate::error::{Error, Result, Status};
 use crate::geometry::canal::surface::SuperCanal;
 use crate::geometry::ruled::design::Draft;
+use crate::geometry::snakes::draft::Draft as SnakeDraft;
 use crate::solver::Solver;
 
 /// A solver. What points to it is no address but a small integer, a handle.
@@ -58,6 +59,7 @@ pub(super) enum Object {
     Solver(Box<Solver>),
     Canal(Box<SuperCanal>),
     Ruled(Box<Draft>),
+    Snake(Box<SnakeDraft>),
 }
 
 impl Object {
@@ -67,6 +69,7 @@ impl Object {
             Self::Solver(_) => Solver::NAME,
             Self::Canal(_) => SuperCanal::NAME,
             Self::Ruled(_) => Draft::NAME,
+            Self::Snake(_) => SnakeDraft::NAME,
         }
     }
 }
@@ -106,6 +109,15 @@ impl Kind for Draft {
 
     fn of(object: &mut Object) -> Option<&mut Self> {
         if let Object::Ruled(draft) = object { Some(draft) } else { None }
+    }
+}
+
+impl Kind for SnakeDraft {
+    const NAME: &'static str = "snake";
+    const ARGUMENT: &'static str = "snake";
+
+    fn of(object: &mut Object) -> Option<&mut Self> {
+        if let Object::Snake(draft) = object { Some(draft) } else { None }
     }
 }
 

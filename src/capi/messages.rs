@@ -43,6 +43,8 @@ thread_local! {
     static SHOWN_CANAL: RefCell<CString> = RefCell::default();
     /// The text about ruled strips that was handed out last.
     static SHOWN_RULED: RefCell<CString> = RefCell::default();
+    /// The text about snakes that was handed out last.
+    static SHOWN_SNAKE: RefCell<CString> = RefCell::default();
 }
 
 /// Keeps the message of a call with its solver.
@@ -99,6 +101,11 @@ pub(super) fn show_canal(text: String) -> *const c_char {
 /// A text about ruled strips as C text that stays valid until this thread's next call for one.
 pub(super) fn show_ruled(text: String) -> *const c_char {
     show(&SHOWN_RULED, text).unwrap_or(ptr::null())
+}
+
+/// A text about snakes as C text that stays valid until this thread's next call for one.
+pub(super) fn show_snake(text: String) -> *const c_char {
+    show(&SHOWN_SNAKE, text).unwrap_or(ptr::null())
 }
 
 /// Keeps `text` in a place of this thread; `None` if the thread is ending.

@@ -29,6 +29,7 @@ mod references;
 mod registry;
 mod report;
 mod ruled;
+mod snakes;
 mod solver;
 mod structs;
 
@@ -44,6 +45,7 @@ pub use references::*;
 pub use registry::*;
 pub use report::*;
 pub use ruled::*;
+pub use snakes::*;
 pub use solver::*;
 
 use std::any::Any;

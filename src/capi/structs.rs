@@ -86,3 +86,28 @@ pub(super) unsafe fn tell<T: SizedStruct>(name: &str, out: *mut T, value: &T) ->
     }
     Ok(())
 }
+
+/// The caller's struct, or the defaults for null.
+///
+/// # Safety
+/// `data` is null or readable for as many bytes as its `struct_size` says, and `T` is valid for any bytes.
+pub(super) unsafe fn told<T: SizedStruct>(name: &str, data: *const T, defaults: T) -> Result<T> {
+    if data.is_null() {
+        return Ok(defaults);
+    }
+    // SAFETY: the caller vouches for it.
+    unsafe { read(name, data, defaults) }
+}
+
+/// Writes a struct with these numbers, which must be finite.
+///
+/// # Safety
+/// `out` is null, or its `struct_size` is set and it is writable for so many bytes.
+pub(super) unsafe fn tell_finite<T: SizedStruct>(name: &str, out: *mut T, value: &T, numbers: &[f64]) -> Result<()> {
+    if numbers.iter().any(|number| !number.is_finite()) {
+        let reason = "coordinates are so large that the result is not finite";
+        return Err(Error::new(Status::InvalidValue, reason).at(name));
+    }
+    // SAFETY: the caller vouches for it.
+    unsafe { tell(name, out, value) }
+}

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use crate::{declarations, shell};
 
 /// The sources of the C ABI, in the order in which the header groups functions.
-const SOURCES: [&str; 31] = [
+const SOURCES: [&str; 43] = [
     "errors",
     "handles",
     "solver",
@@ -40,6 +40,18 @@ const SOURCES: [&str; 31] = [
     "ruled/report",
     "ruled/output",
     "ruled/planks",
+    "snakes/snake",
+    "snakes/fit",
+    "snakes/curve",
+    "snakes/surface",
+    "snakes/wishes",
+    "snakes/rails",
+    "snakes/evolve",
+    "snakes/frames",
+    "snakes/cycle",
+    "snakes/linkage",
+    "snakes/sweep",
+    "snakes/texts",
 ];
 
 /// Writes the header and the declarations for other languages, or only compares.

@@ -435,6 +435,17 @@ impl Draft {
         })
     }
 
+    /// The times of all positions found; of a linkage's motion they are counted.
+    ///
+    /// # Errors
+    /// As [`Draft::track`].
+    pub fn times(&self) -> Result<Vec<f64>> {
+        Ok(match self.track()? {
+            Track::Evolution(found) => found.frames.iter().map(|frame| frame.time).collect(),
+            Track::Cycle(found) => (0..found.frames.len()).map(|k| k as f64).collect(),
+        })
+    }
+
     /// The snake at a position found, or as it is.
     ///
     /// # Errors

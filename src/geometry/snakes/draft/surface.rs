@@ -71,7 +71,8 @@ impl NamedSurface {
         for (k, &number) in numbers.iter().enumerate() {
             finite(&format!("numbers[{k}]"), number)?;
         }
-        let refused = |k: usize, reason: String| Err(Error::new(Status::InvalidValue, reason).at(format!("numbers[{k}]")));
+        let refused =
+            |k: usize, reason: String| Err(Error::new(Status::InvalidValue, reason).at(format!("numbers[{k}]")));
         let mut axis = DVec3::Z;
         if kind != SurfaceKind::Sphere {
             match DVec3::from_slice(&numbers[3..]).try_normalize() {
@@ -133,11 +134,9 @@ impl NamedSurface {
 
     fn jet(&self, u: f64, v: f64) -> SurfaceJet {
         let jet = match self.kind {
-            SurfaceKind::Plane => SurfaceJet {
-                point: DVec3::new(u, v, 0.0),
-                first: [DVec3::X, DVec3::Y],
-                second: [DVec3::ZERO; 3],
-            },
+            SurfaceKind::Plane => {
+                SurfaceJet { point: DVec3::new(u, v, 0.0), first: [DVec3::X, DVec3::Y], second: [DVec3::ZERO; 3] }
+            }
             SurfaceKind::Sphere => torus(0.0, self.radius)(u, v),
             SurfaceKind::Cylinder => cylinder(self.radius)(u, v),
             SurfaceKind::Torus => torus(self.radius, self.tube)(u, v),
@@ -207,7 +206,13 @@ impl Surface {
     ///
     /// # Errors
     /// As [`mesh_curve`] or [`curvature_curve`].
-    pub fn curve(&self, start: DVec3, tangent: DVec3, course: &Course<'_>, options: &Options) -> Result<CurvatureCurve> {
+    pub fn curve(
+        &self,
+        start: DVec3,
+        tangent: DVec3,
+        course: &Course<'_>,
+        options: &Options,
+    ) -> Result<CurvatureCurve> {
         match self {
             Self::Mesh(mesh) => Ok(mesh_curve(&ReferenceMesh::new(mesh), start, tangent, course, options)?.curve),
             Self::Named(surface) => {

@@ -52,7 +52,8 @@ fn rails_begin_at_their_nearest_points() {
     for frame in &evolution.frames {
         assert!(frame.snake.control()[4].distance(end + frame.time * DVec3::Y) < 1e-12);
     }
-    let place = |draft: &mut Draft, line: &[DVec3], role| draft.add_rail(line, false, role).unwrap_err().place().to_owned();
+    let place =
+        |draft: &mut Draft, line: &[DVec3], role| draft.add_rail(line, false, role).unwrap_err().place().to_owned();
     assert_eq!(place(&mut draft, &line, driven), "point");
     assert_eq!(place(&mut draft, &line, Role::Driven { point: 9, speed: 1.0 }), "point");
     assert_eq!(place(&mut draft, &line, Role::Driven { point: 0, speed: 1.0 }), "points");
