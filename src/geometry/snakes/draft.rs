@@ -418,8 +418,8 @@ impl Draft {
         match self.track()? {
             Track::Cycle(motion) => Ok(motion),
             Track::Evolution(_) => {
-                let reason = "nothing is known of the snake's motion as a linkage: find its cycle first";
-                Err(Error::new(Status::NotInitialised, reason))
+                let reason = "nothing is known of its motion as a linkage: find its cycle first";
+                Err(Error::new(Status::NotInitialised, reason).at("snake"))
             }
         }
     }
@@ -508,7 +508,7 @@ impl Draft {
 }
 
 fn nothing() -> Error {
-    Error::new(Status::NotInitialised, "nothing is known of the snake's motion: let it evolve first")
+    Error::new(Status::NotInitialised, "nothing is known of its motion: let it evolve first").at("snake")
 }
 
 #[cfg(test)]
