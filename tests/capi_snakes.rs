@@ -357,6 +357,7 @@ fn handles_are_told_apart() {
         }
         assert!(shapeop_snakeCopy(handle).is_null() && names("snake"));
         assert_eq!(shapeop_snakeRailCount(handle), -1);
+        assert!(shapeop_snakeText(handle).is_null());
     }
     assert_eq!(solver.message(), "");
     assert_eq!(shapeop_pointCount(snake.0.cast()), -1, "a snake is no solver");
@@ -435,9 +436,8 @@ fn a_snake_in_a_plane_moves_rigidly_in_it() {
     let mut residual = -1.0;
     let (null, off) = (ptr::null(), &raw mut residual);
     // SAFETY: `all` gives room for the stated capacity; one double.
-    let velocities = points(&all(0.0, 3, |out, room, count| unsafe {
-        shapeop_snakeVelocity(snake.0, null, out, room, count, off)
-    }));
+    let velocities =
+        points(&all(0.0, 3, |out, room, count| unsafe { shapeop_snakeVelocity(snake.0, null, out, room, count, off) }));
     assert!((0.0..1e-12).contains(&residual) && velocities.iter().all(|v| v[2].abs() < 1e-9 && length(*v) > 0.1));
     let own = shapeop_snake_options { max_steps: 6, step: 0.02, ..options() };
     let found = evolve(&snake, &own);
@@ -643,7 +643,11 @@ fn projections_keep_distances_and_are_near() {
         assert_eq!(shapeop_snakeProject(other.0, target.as_ptr(), 5, null, ptr::null_mut()), SO_SUCCESS);
         assert!(off(&control(&other)) >= nearest * (1.0 - 1e-9) && off(&control(&other)) < 1.01 * nearest);
         let after = control(&snake);
-        refused(shapeop_snakeProject(snake.0, target.as_ptr(), 4, &own, &mut told), SO_INVALID_ARGUMENT_LENGTH, "nb_target");
+        refused(
+            shapeop_snakeProject(snake.0, target.as_ptr(), 4, &own, &mut told),
+            SO_INVALID_ARGUMENT_LENGTH,
+            "nb_target",
+        );
         refused(shapeop_snakeProject(snake.0, ptr::null(), 5, &own, &mut told), SO_NULL_POINTER, "target");
         let mut nan = target.clone();
         nan[4] = f64::NAN;
@@ -920,7 +924,11 @@ fn what_snakes_are_made_of() {
         let mut kinds = 0;
         refused(shapeop_snakeKinds(mixed.0, -1.0, to, 0, &mut kinds), SO_INVALID_VALUE, "tolerance");
         refused(shapeop_snakeKindOf(mixed.0, f64::NAN, into, 0, &mut kinds), SO_INVALID_VALUE, "tolerance");
-        refused(shapeop_snakeSweepMesh(handle, 4, 0, to, 0, &mut count, into, 0, &mut quad_count), SO_NOT_INITIALISED, "snake");
+        refused(
+            shapeop_snakeSweepMesh(handle, 4, 0, to, 0, &mut count, into, 0, &mut quad_count),
+            SO_NOT_INITIALISED,
+            "snake",
+        );
     }
 }
 
@@ -948,8 +956,9 @@ fn a_circle_that_moves_along_its_axis_sweeps_a_cylinder() {
     let (mut count, mut quad_count, null, none) = (0, 0, ptr::null_mut(), ptr::null_mut());
     // SAFETY: null with no capacity.
     unsafe {
-        let mut sweep =
-            |per_arc, back| shapeop_snakeSweepMesh(handle, per_arc, back, null, 0, &mut count, none, 0, &mut quad_count);
+        let mut sweep = |per_arc, back| {
+            shapeop_snakeSweepMesh(handle, per_arc, back, null, 0, &mut count, none, 0, &mut quad_count)
+        };
         refused(sweep(0, 0), SO_INVALID_VALUE, "per_arc");
         refused(sweep(3, 2), SO_INVALID_VALUE, "comes_back");
         assert_eq!(sweep(3, 1), SO_SUCCESS);
@@ -1048,7 +1057,6 @@ fn a_linkage_moves_around() {
     }
 }
 
-#[cfg(any())]
 #[test]
 fn snakes_and_their_arcs_as_texts() {
     let snake = Snake(create(&ring(8, 0.0), 1, (PI / 8.0).tan()));
@@ -1066,7 +1074,10 @@ fn snakes_and_their_arcs_as_texts() {
     let (now, everything) = (SHAPEOP_SNAKE_NOW, SHAPEOP_SNAKE_ALL);
     let lines = |table: *const std::ffi::c_char| text(table).lines().count();
     assert_eq!(lines(shapeop_snakeArcsCsv(snake.0, now, 1e-6)), 9);
-    assert_eq!(text(shapeop_snakeKindsCsv(snake.0, now, 1e-6)).lines().nth(1).unwrap().split(',').next_back(), Some("8"));
+    assert_eq!(
+        text(shapeop_snakeKindsCsv(snake.0, now, 1e-6)).lines().nth(1).unwrap().split(',').next_back(),
+        Some("8")
+    );
     assert!(text(shapeop_snakeArcsText(snake.0, now, 1e-6)).contains("angle_rad"));
     assert_eq!(text(shapeop_snakeArcsDxf(snake.0, now, 1e-6)).lines().filter(|line| line.trim() == "ARC").count(), 8);
     assert!(shapeop_snakeArcsText(snake.0, everything, 1e-6).is_null());
@@ -1078,7 +1089,10 @@ fn snakes_and_their_arcs_as_texts() {
     unsafe { assert_eq!(shapeop_snakeSetDirection(snake.0, along, Z.as_ptr()), SO_SUCCESS) };
     evolve(&snake, &shapeop_snake_options { max_steps: 2, ..options() });
     assert_eq!(lines(shapeop_snakeArcsCsv(snake.0, everything, 1e-6)), 1 + 3 * 8);
-    assert_eq!(text(shapeop_snakeKindsCsv(snake.0, everything, 1e-6)).lines().nth(1).unwrap().split(',').next_back(), Some("24"));
+    assert_eq!(
+        text(shapeop_snakeKindsCsv(snake.0, everything, 1e-6)).lines().nth(1).unwrap().split(',').next_back(),
+        Some("24")
+    );
     assert_eq!(lines(shapeop_snakeArcsCsv(snake.0, 2, 1e-6)), 9);
 }
 

@@ -11,6 +11,7 @@ mod rails;
 mod snake;
 mod surface;
 mod sweep;
+mod texts;
 mod wishes;
 
 pub use curve::*;
@@ -23,6 +24,7 @@ pub use rails::*;
 pub use snake::*;
 pub use surface::*;
 pub use sweep::*;
+pub use texts::*;
 pub use wishes::*;
 
 use std::ffi::c_char;

@@ -6,7 +6,8 @@ use super::super::arguments::text;
 use super::io;
 use super::snake::{SHAPEOP_SNAKE_ALL, ShapeOpSnake};
 use super::{created, shown};
-use crate::error::Result;
+use crate::error::{Error, Result, Status};
+use crate::geometry::snakes::Arc;
 use crate::geometry::snakes::arc_list::ArcList;
 use crate::geometry::snakes::draft::Draft;
 use crate::geometry::snakes::file;
@@ -33,11 +34,18 @@ pub extern "C" fn shapeop_snakeText(snake: *mut ShapeOpSnake) -> *const c_char {
 
 /// The arcs that `frame` names.
 fn list(draft: &Draft, frame: c_int, tolerance: f64) -> Result<ArcList> {
-    if frame == SHAPEOP_SNAKE_ALL {
-        return draft.arc_list(tolerance);
+    let found = if frame == SHAPEOP_SNAKE_ALL {
+        draft.arc_list(tolerance)?
+    } else {
+        let at = draft.at(io::frame(frame)?)?;
+        ArcList::new(&at, &[at.control().to_vec()], &[0.0], tolerance)?
+    };
+    let is_finite = |arc: &Arc| arc.circle.center.is_finite() && arc.circle.normal.is_finite() && arc.start.is_finite();
+    if found.snakes().iter().all(|snake| snake.arcs().iter().all(is_finite)) {
+        return Ok(found);
     }
-    let at = draft.at(io::frame(frame)?)?;
-    ArcList::new(&at, &[at.control().to_vec()], &[0.0], tolerance)
+    let reason = "coordinates are so large that the result is not finite";
+    Err(Error::new(Status::InvalidValue, reason).at("snake"))
 }
 
 /// The arcs of the snake at a frame, as it is (`SHAPEOP_SNAKE_NOW`) or at all positions found last (`SHAPEOP_SNAKE_ALL`)

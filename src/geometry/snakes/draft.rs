@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
+use super::arc_list::ArcList;
 use super::covering::{flat_lamellae, lamella};
 use super::cycle::{self, Motion, cycle};
 use super::evolution::{self, Direction, Evolution, Task, evolve};
@@ -487,6 +488,14 @@ impl Draft {
     /// As [`swept_grid`].
     pub fn swept(&self, per_arc: usize, comes_back: bool) -> Result<Grid> {
         swept_grid(&self.snake, &self.frames()?, per_arc, comes_back)
+    }
+
+    /// The arcs of all positions found.
+    ///
+    /// # Errors
+    /// As [`Draft::frames`] and [`ArcList::new`].
+    pub fn arc_list(&self, tolerance: f64) -> Result<ArcList> {
+        ArcList::new(&self.snake, &self.frames()?, &self.times()?, tolerance)
     }
 
     /// Lamellae of a depth along the snake at a position found, or as it is.
