@@ -4,13 +4,14 @@
  *
  * Handles. A ShapeOpSolver* is a small integer (nonzero, below 2^31), not an address: never dereference it. A null
  * handle, one that was deleted, and one that never was a solver's are recognised and refused. Only the low 32 bits
- * count. A ShapeOpCanal* is a handle of a surface, a ShapeOpRuled* of a design of ruled strips, and what is said of
- * solvers here holds for them too.
+ * count. A ShapeOpCanal* is a handle of a surface, a ShapeOpRuled* of a design of ruled strips, a ShapeOpSnake* of a
+ * circular arc snake, and what is said of solvers here holds for them too.
  *
  * Ownership. Every solver of shapeop_create belongs to the caller, who deletes it with shapeop_delete, and every
- * surface, who deletes it with shapeop_canalDelete, and every design, who deletes it with shapeop_ruledDelete. Arrays
- * belong to the caller: the library copies what it reads and keeps no pointer. Texts belong to the library and are
- * never freed; how long they stay valid is said with each function.
+ * surface, who deletes it with shapeop_canalDelete, every design, who deletes it with shapeop_ruledDelete, and every
+ * snake, who deletes it with shapeop_snakeDelete. Arrays belong to the caller: the library copies what it reads and
+ * keeps no pointer. Texts belong to the library and are never freed; how long they stay valid is said with each
+ * function.
  *
  * Arrays. Points are double[3 * n]: x y z of point 0, then of point 1, and so on. Lengths of points are counted in
  * points, all others in entries. An array of length 0 may be null. Results are written only if the call succeeds.
@@ -22,7 +23,7 @@
  * Errors. A refused call changes nothing, and answers with an error code, with 1 (shapeop_init, shapeop_initDynamic,
  * shapeop_solve), with -1 (ids, counts, truths) or with null (handles, texts). In all cases, functions without a result
  * included, shapeop_lastError then says why and shapeop_lastErrorCode gives the code; after a call that succeeded the
- * text is empty and the code SO_SUCCESS. Of calls on surfaces and designs, and of those that take no handle,
+ * text is empty and the code SO_SUCCESS. Of calls on surfaces, designs and snakes, and of those that take no handle,
  * shapeop_lastError of null tells. Numbers that are not finite are refused where they enter, and none is ever handed
  * out.
  *
@@ -119,6 +120,16 @@
  */
 #define SHAPEOP_RULED_ALL -1
 
+/**
+ * For `frame`: the snake as it is.
+ */
+#define SHAPEOP_SNAKE_NOW -1
+
+/**
+ * For `frame`, where that is said: all positions found last.
+ */
+#define SHAPEOP_SNAKE_ALL -2
+
 #if !defined(SHAPEOP_COMPAT_API_H)
 /**
  * Why a call was refused. The numbers are frozen: 0 to 3 are those of libShapeOp 0.1.0, new ones are added from 16 up.
@@ -145,7 +156,7 @@ typedef enum shapeop_err {
      */
     SO_INVALID_VALUE = 16,
     /**
-     * A point index is out of range.
+     * An index is out of range.
      */
     SO_INDEX_OUT_OF_RANGE = 17,
     /**
@@ -153,7 +164,7 @@ typedef enum shapeop_err {
      */
     SO_UNMATCHING_FORCE_ID = 18,
     /**
-     * The solver was not initialised.
+     * Another call must come first: a solver is not initialised, or nothing was found yet that could be told.
      */
     SO_NOT_INITIALISED = 19,
     /**
@@ -161,11 +172,11 @@ typedef enum shapeop_err {
      */
     SO_UNBOUNDED = 20,
     /**
-     * Another call is using the solver.
+     * Another call is using the solver, surface, design or snake.
      */
     SO_BUSY = 21,
     /**
-     * The handle is null, was deleted, or never was a solver's.
+     * The handle is null, was deleted, or never was one of such an object.
      */
     SO_INVALID_HANDLE = 22,
     /**
@@ -209,7 +220,7 @@ typedef enum shapeop_err {
      */
     SO_NO_SOLUTION = 32,
     /**
-     * Opposite edges of a quad are parallel where the fourth corner is found by meeting them.
+     * Equations do not determine an answer: edges of a quad that are to meet are parallel, or derivatives lose rank.
      */
     SO_SINGULAR = 33,
     /**
@@ -391,6 +402,92 @@ typedef enum shapeop_ruled_image {
      */
     SO_RULED_IMAGE_CURVE = 4,
 } shapeop_ruled_image;
+
+/**
+ * Why a curve of given curvature ends.
+ */
+typedef enum shapeop_snake_curve_end {
+    /**
+     * It is as long as asked for.
+     */
+    SO_SNAKE_CURVE_LENGTH = 0,
+    /**
+     * At the boundary of the surface.
+     */
+    SO_SNAKE_CURVE_BOUNDARY = 1,
+    /**
+     * The surface itself bends more along the curve than the curve may.
+     */
+    SO_SNAKE_CURVE_BENDS_MORE = 2,
+    /**
+     * The surface has no tangent plane there, or folds.
+     */
+    SO_SNAKE_CURVE_FOLD = 3,
+} shapeop_snake_curve_end;
+
+/**
+ * Why an evolution stopped.
+ */
+typedef enum shapeop_snake_stop {
+    /**
+     * All steps were made.
+     */
+    SO_SNAKE_STOP_STEPS = 0,
+    /**
+     * The next position would be farther from the surface than allowed: see `stop_distance`.
+     */
+    SO_SNAKE_STOP_DEVIATION = 1,
+    /**
+     * Velocities, or positions, are not determined.
+     */
+    SO_SNAKE_STOP_SINGULAR = 2,
+    /**
+     * A rail ended, or the snake left it: see `stop_rail` and `stop_distance`.
+     */
+    SO_SNAKE_STOP_RAIL_END = 3,
+    /**
+     * A rail that the snake glides on became parallel to it: see `stop_rail`.
+     */
+    SO_SNAKE_STOP_PARALLEL = 4,
+    /**
+     * The snake is back at its start.
+     */
+    SO_SNAKE_STOP_CYCLE = 5,
+    /**
+     * It does not move any more.
+     */
+    SO_SNAKE_STOP_STALLED = 6,
+    /**
+     * The callback said so.
+     */
+    SO_SNAKE_STOP_CANCELLED = 7,
+} shapeop_snake_stop;
+
+/**
+ * Why a linkage's motion ends.
+ */
+typedef enum shapeop_snake_cycle_end {
+    /**
+     * It came back to the start.
+     */
+    SO_SNAKE_CYCLE_CLOSED = 0,
+    /**
+     * All steps were used.
+     */
+    SO_SNAKE_CYCLE_STEPS = 1,
+    /**
+     * At the last position it can move in another number of ways than one: see `free`.
+     */
+    SO_SNAKE_CYCLE_FREEDOMS = 2,
+    /**
+     * No step leads on.
+     */
+    SO_SNAKE_CYCLE_STALLED = 3,
+    /**
+     * The callback said so.
+     */
+    SO_SNAKE_CYCLE_CANCELLED = 4,
+} shapeop_snake_cycle_end;
 
 /**
  * How iterations are accelerated: see `shapeop_setAcceleration`.
@@ -611,6 +708,65 @@ typedef enum shapeop_ruled_levels {
 } shapeop_ruled_levels;
 
 /**
+ * A surface that a few numbers tell. Normals point outward, that of a plane as given.
+ */
+typedef enum shapeop_snake_surface {
+    /**
+     * A point and the normal: 6 numbers.
+     */
+    SO_SNAKE_SURFACE_PLANE = 0,
+    /**
+     * The centre and the radius: 4 numbers.
+     */
+    SO_SNAKE_SURFACE_SPHERE = 1,
+    /**
+     * A point of the axis, its direction, the radius: 7 numbers.
+     */
+    SO_SNAKE_SURFACE_CYLINDER = 2,
+    /**
+     * The centre, the direction of the axis, the distance of the tube's middle from it, the radius of the tube: 8
+     * numbers.
+     */
+    SO_SNAKE_SURFACE_TORUS = 3,
+} shapeop_snake_surface;
+
+/**
+ * Which way control points are to move.
+ */
+typedef enum shapeop_snake_direction {
+    /**
+     * None is given: rails or other wishes say it. So it is at first.
+     */
+    SO_SNAKE_DIRECTION_FREE = 0,
+    /**
+     * To the left of the snake within its surface, seen from the side that the surface's normals point to.
+     */
+    SO_SNAKE_DIRECTION_SIDEWAYS = 1,
+    /**
+     * All along one vector.
+     */
+    SO_SNAKE_DIRECTION_ALONG = 2,
+} shapeop_snake_direction;
+
+/**
+ * How lamellae stand.
+ */
+typedef enum shapeop_snake_lamella {
+    /**
+     * In the planes of the arcs: a sector of a ring for each, which share no points.
+     */
+    SO_SNAKE_LAMELLA_FLAT = 0,
+    /**
+     * Along the normals of the snake's surface: one band.
+     */
+    SO_SNAKE_LAMELLA_NORMAL = 1,
+    /**
+     * Along one vector: one band.
+     */
+    SO_SNAKE_LAMELLA_ALONG = 2,
+} shapeop_snake_lamella;
+
+/**
  * A super-canal surface: a circular net with a frame at each point, and the transformations that made it of its base.
  * What points to it is no address but a small integer, a handle. All functions named `shapeop_canal...` leave their
  * messages for `shapeop_lastError` of null.
@@ -624,6 +780,18 @@ typedef struct ShapeOpCanal ShapeOpCanal;
  * `shapeop_lastError` of null.
  */
 typedef struct ShapeOpRuled ShapeOpRuled;
+
+/**
+ * A circular arc snake: a smooth chain of circular arcs that moves while each arc keeps its shape; with it the surface
+ * that it moves on, the rails that guide it, the wishes for its velocities, and the positions that were found last. What
+ * points to it is no address but a small integer, a handle. All functions named `shapeop_snake...` leave their messages
+ * for `shapeop_lastError` of null.
+ *
+ * A snake of N arcs has control points: of a closed one N, the vertices of the arcs in order; of an open one N + 2, its
+ * first point, the vertices, its last point. An arc touches both edges at its vertex. Arcs meet in contact points: of an
+ * open snake N + 1, its ends among them, of a closed one N.
+ */
+typedef struct ShapeOpSnake ShapeOpSnake;
 
 #if !defined(SHAPEOP_COMPAT_API_H)
 /**
@@ -2003,6 +2171,432 @@ typedef struct shapeop_ruled_plank {
      */
     double offcut;
 } shapeop_ruled_plank;
+
+/**
+ * What a snake is like.
+ */
+typedef struct shapeop_snake_report {
+    /**
+     * In: `sizeof(shapeop_snake_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * The number of arcs.
+     */
+    unsigned int arc_count;
+    /**
+     * The number of control points.
+     */
+    unsigned int control_count;
+    /**
+     * 1 if the last arc goes on with the first.
+     */
+    int is_closed;
+    /**
+     * The sum of the arcs' lengths, in model units.
+     */
+    double length;
+    /**
+     * By how much a distance of control points that the arcs keep is off at most, in model units.
+     */
+    double residual;
+    /**
+     * The largest distance of a contact point or the middle of an arc from the surface, in model units; 0 without one.
+     */
+    double deviation;
+} shapeop_snake_report;
+
+/**
+ * How a snake is fitted. Start from `shapeop_snakeDefaultFitOptions`.
+ */
+typedef struct shapeop_snake_fit_options {
+    /**
+     * In: `sizeof(shapeop_snake_fit_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * 1: all arcs have one radius, not only one length. Default 1.
+     */
+    int is_congruent;
+    /**
+     * Iterations at most, of each of three minimisations. Default 200.
+     */
+    unsigned int max_iterations;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * The curvature of all arcs, if it is known, in 1/model units; 0: it is found. Default 0.
+     */
+    double curvature;
+    /**
+     * The weight of nearness beside that of distances, above 0. Default 0.005.
+     */
+    double nearness;
+} shapeop_snake_fit_options;
+
+/**
+ * What fitting found.
+ */
+typedef struct shapeop_snake_fit_report {
+    /**
+     * In: `sizeof(shapeop_snake_fit_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Iterations of the minimisations.
+     */
+    unsigned int iterations;
+    /**
+     * 1 if steps or decreases became small; 0 if all iterations were used.
+     */
+    int is_converged;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * The largest distance of a point of the polyline from the nearest arc, in model units.
+     */
+    double deviation;
+    /**
+     * By how much a distance of control points is off at most, in model units.
+     */
+    double residual;
+} shapeop_snake_fit_report;
+
+/**
+ * How a curve of given curvature is found. Start from `shapeop_snakeDefaultCurveOptions`.
+ */
+typedef struct shapeop_snake_curve_options {
+    /**
+     * In: `sizeof(shapeop_snake_curve_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * 0: it turns left, seen from where the surface's normal points; 1: right. Default 0.
+     */
+    int turns_right;
+    /**
+     * Into how many steps the length is divided, 1 to 1 000 000. Default 200.
+     */
+    unsigned int steps;
+    /**
+     * 0: the method of Runge and Kutta; 1: that of chords, of first order. Default 0.
+     */
+    int method;
+} shapeop_snake_curve_options;
+
+/**
+ * What was found of a curve.
+ */
+typedef struct shapeop_snake_curve_report {
+    /**
+     * In: `sizeof(shapeop_snake_curve_report)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Why it ends.
+     */
+    enum shapeop_snake_curve_end end;
+    /**
+     * Its length, in model units.
+     */
+    double length;
+    /**
+     * Where the surface bends more: the curvature asked for there, in 1/model units; otherwise 0.
+     */
+    double curvature;
+    /**
+     * Where the surface bends more: its normal curvature in the direction of the curve; otherwise 0.
+     */
+    double normal_curvature;
+} shapeop_snake_curve_report;
+
+/**
+ * How a snake moves. Start from `shapeop_snakeDefaultOptions`. Weights are 0 or more: what squared differences of
+ * velocities from what they are to be are multiplied by.
+ */
+typedef struct shapeop_snake_options {
+    /**
+     * In: `sizeof(shapeop_snake_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Stop after so many steps. Default 100.
+     */
+    unsigned int max_steps;
+    /**
+     * 1: steps follow accelerations too, and can be longer. Default 0.
+     */
+    int is_second_order;
+    /**
+     * 1: distances of control points three apart stay, so that the snake moves rigidly; where that contradicts rails, as
+     * well as possible. Default 0.
+     */
+    int keeps_torsions;
+    /**
+     * 1: stop when the snake is back where it started. Default 1.
+     */
+    int stops_at_cycle;
+    /**
+     * 1: steps are projected to the nearest position; only without a surface. Default 0.
+     */
+    int is_exact;
+    /**
+     * Iterations of a projection at most. Default 60.
+     */
+    unsigned int projection_iterations;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * The time of a step, above 0. Steps are halved where they lead too far. Default 0.05.
+     */
+    double step;
+    /**
+     * No step is shorter than this part of `step`; above 0, at most 1. Default 1e-4.
+     */
+    double least_step;
+    /**
+     * Stop before a contact point or the middle of an arc is farther from the surface than this, in model units; below 0:
+     * anywhere. Default -1.
+     */
+    double max_deviation;
+    /**
+     * The weight of velocities tangential to the surface. Default 1.
+     */
+    double tangential;
+    /**
+     * The weight of speeds in the direction of `shapeop_snakeSetDirection`. Default 0.1.
+     */
+    double offset;
+    /**
+     * The weight of torsions that do not change. Default 0.
+     */
+    double rotation;
+    /**
+     * The weight of velocities at right angles to arcs. Default 0.
+     */
+    double orthogonal;
+    /**
+     * What accelerations along the surface count against those across it, above 0. Default 0.01.
+     */
+    double alpha;
+    /**
+     * What the squared way of a projection counts against squared errors of distances, above 0. Default 0.005.
+     */
+    double mu;
+    /**
+     * What squared errors of heights over the surface count against them, 0 or more. Default 1.
+     */
+    double surface_weight;
+} shapeop_snake_options;
+
+/**
+ * What a projection found.
+ */
+typedef struct shapeop_snake_projection {
+    /**
+     * In: `sizeof(shapeop_snake_projection)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Iterations of the first phase.
+     */
+    unsigned int iterations;
+    /**
+     * Steps of the second.
+     */
+    unsigned int steps;
+    /**
+     * 1 if it is the nearest position to round-off, where that was asked for.
+     */
+    int is_nearest;
+    /**
+     * By how much a distance is off at most, in model units.
+     */
+    double residual;
+    /**
+     * By how much a control point is from its target at most, in model units.
+     */
+    double moved;
+} shapeop_snake_projection;
+
+/**
+ * What the progress callback of a call on snakes is told.
+ */
+typedef struct shapeop_snake_progress {
+    /**
+     * `sizeof(shapeop_snake_progress)` in the library; fields may be added at the end.
+     */
+    unsigned int struct_size;
+    /**
+     * Steps made so far.
+     */
+    unsigned int step;
+    /**
+     * The part done, 0 to 1, of what may be needed.
+     */
+    double fraction;
+    /**
+     * The time; of a linkage's motion 0.
+     */
+    double time;
+    /**
+     * The largest distance of a contact point or the middle of an arc from the surface, in model units; 0 without one.
+     */
+    double deviation;
+    /**
+     * By how much a distance or a rail is missed at most, in model units; of a linkage's motion 0.
+     */
+    double residual;
+    /**
+     * By how much the first arc of a linkage is turned from its start, in radians; of an evolution 0.
+     */
+    double first_angle;
+    /**
+     * By how much the last arc of a linkage is turned from its start, in radians; of an evolution 0.
+     */
+    double last_angle;
+} shapeop_snake_progress;
+
+/**
+ * Called before every step, on the thread that made the call. Returns 0 to go on; anything else ends the call, which
+ * succeeds with the positions so far. It must return: no exception, no `longjmp`.
+ */
+typedef int (*shapeop_snake_progress_callback)(const struct shapeop_snake_progress *progress, void *user);
+
+/**
+ * What an evolution found.
+ */
+typedef struct shapeop_snake_evolution {
+    /**
+     * In: `sizeof(shapeop_snake_evolution)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Why it stopped.
+     */
+    enum shapeop_snake_stop stop;
+    /**
+     * The rail that stopped it, or -1.
+     */
+    int stop_rail;
+    /**
+     * The number of frames, the start among them.
+     */
+    unsigned int frame_count;
+    /**
+     * How far the snake would be from the surface, or from the rail, in model units; 0 where a driven point came to the
+     * end of its rail, and for all other reasons.
+     */
+    double stop_distance;
+    /**
+     * The time of the last frame.
+     */
+    double time;
+    /**
+     * The largest deviation of all frames from the surface, in model units; 0 without one.
+     */
+    double deviation;
+    /**
+     * By how much a distance or a rail is missed at most in any frame, in model units.
+     */
+    double residual;
+    /**
+     * By how much the height of a control point over the surface differs from that at the start at most.
+     */
+    double height_residual;
+    /**
+     * By how much a distance of control points three apart is off at most, where those are kept.
+     */
+    double incongruence;
+} shapeop_snake_evolution;
+
+/**
+ * How a linkage's motion is followed. Start from `shapeop_snakeDefaultCycleOptions`.
+ */
+typedef struct shapeop_snake_cycle_options {
+    /**
+     * In: `sizeof(shapeop_snake_cycle_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Steps at most, at least 1. Default 20 000.
+     */
+    unsigned int max_steps;
+    /**
+     * 1: the first arc begins by turning clockwise about its hinge, seen against the direction from the first control
+     * point to the second. Default 0.
+     */
+    int is_reversed;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * By which angle the driving arc turns in a step, in radians, above 0 and at most 0.2. Default 0.02.
+     */
+    double step;
+} shapeop_snake_cycle_options;
+
+/**
+ * What was found of a linkage's motion.
+ */
+typedef struct shapeop_snake_cycle {
+    /**
+     * In: `sizeof(shapeop_snake_cycle)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Why it ends.
+     */
+    enum shapeop_snake_cycle_end end;
+    /**
+     * In how many ways it can move at the last position, where the motion ends for that; otherwise 1.
+     */
+    unsigned int free;
+    /**
+     * The number of frames; a closed motion does not repeat the start.
+     */
+    unsigned int frame_count;
+    /**
+     * How far the first arc has turned when a closed motion is at its start again, in whole turns.
+     */
+    int first_turns;
+    /**
+     * The same of the last arc.
+     */
+    int last_turns;
+    /**
+     * How often the drive changed ends.
+     */
+    unsigned int switch_count;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * How far the position found in the end is from the first, as the largest distance of two control points, in model
+     * units; -1 of a motion that is not closed.
+     */
+    double closing;
+    /**
+     * How far apart the extreme positions of the first arc are, in radians.
+     */
+    double first_range;
+    /**
+     * The same of the last arc.
+     */
+    double last_range;
+    /**
+     * By how much a distance is off at most in any frame, in model units.
+     */
+    double residual;
+} shapeop_snake_cycle;
 
 #ifdef __cplusplus
 extern "C" {
@@ -4978,6 +5572,743 @@ SHAPEOP_API const char *shapeop_ruledPlanksText(struct ShapeOpRuled *design);
  * `name` is null or ends with a zero.
  */
 SHAPEOP_API const char *shapeop_ruledPlanksSvg(struct ShapeOpRuled *design, const char *name, double millimetres);
+
+/**
+ * Creates the snake with these control points, `nb_control` of them, open or, with `is_closed` 1, closed; null if it is
+ * refused. The arcs follow from them: around a closed snake of an even number of arcs there are none or many, of which
+ * `first_tangent` chooses, the distance from the first control point to both ends of its arc; otherwise it is 0. Delete
+ * the snake with `shapeop_snakeDelete`.
+ *
+ * # Safety
+ * `control` is null or readable for `3 * nb_control` doubles.
+ */
+SHAPEOP_API
+struct ShapeOpSnake *shapeop_snakeCreate(const double *control,
+                                         int nb_control,
+                                         int is_closed,
+                                         double first_tangent);
+
+/**
+ * Creates the open snake of arcs of these radii and lengths, `nb_arcs` of each, in model units; null if it is refused.
+ * `torsions[j]` is by how much the plane turns from arc `j` to the next, in radians, counterclockwise about the tangent;
+ * there is one fewer of them. The snake begins at `point` along `tangent`, and its first arc bends towards `normal`.
+ *
+ * # Safety
+ * `radii` and `lengths` are null or readable for `nb_arcs` doubles, `torsions` for `nb_torsions`, the vectors for 3.
+ */
+SHAPEOP_API
+struct ShapeOpSnake *shapeop_snakeCreateFromArcs(const double *radii,
+                                                 const double *lengths,
+                                                 int nb_arcs,
+                                                 const double *torsions,
+                                                 int nb_torsions,
+                                                 const double *point,
+                                                 const double *tangent,
+                                                 const double *normal);
+
+/**
+ * Creates a copy of a snake, with all that belongs to it; null if it is refused.
+ */
+SHAPEOP_API struct ShapeOpSnake *shapeop_snakeCopy(struct ShapeOpSnake *snake);
+
+/**
+ * Deletes a snake. Null does nothing; a busy snake is left alone, as is whatever is no snake.
+ */
+SHAPEOP_API void shapeop_snakeDelete(struct ShapeOpSnake *snake);
+
+/**
+ * Writes what a snake is like to `report`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `report` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeReport(struct ShapeOpSnake *snake, struct shapeop_snake_report *report);
+
+/**
+ * Writes the control points if there is room for `capacity` of them, and their number to `count`.
+ *
+ * # Safety
+ * `control` is null or writable for `3 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeControl(struct ShapeOpSnake *snake,
+                                      double *control,
+                                      int capacity,
+                                      int *count);
+
+/**
+ * Puts the control points elsewhere, as many as there are; they need not keep the distances, see `shapeop_snakeProject`.
+ * What was found of the snake's motion is forgotten.
+ *
+ * # Safety
+ * `control` is null or readable for `3 * nb_control` doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeSetControl(struct ShapeOpSnake *snake,
+                                         const double *control,
+                                         int nb_control);
+
+/**
+ * Writes the contact points if there is room for `capacity` of them, and their number to `count`.
+ *
+ * # Safety
+ * `contacts` is null or writable for `3 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeContacts(struct ShapeOpSnake *snake,
+                                       double *contacts,
+                                       int capacity,
+                                       int *count);
+
+/**
+ * Writes the radii and lengths of the arcs, in model units, if there is room for `capacity` of them, and their number to
+ * `count`. Each output but `count` may be null.
+ *
+ * # Safety
+ * `radii` and `lengths` are null or writable for `capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeShapes(struct ShapeOpSnake *snake,
+                                     double *radii,
+                                     double *lengths,
+                                     int capacity,
+                                     int *count);
+
+/**
+ * Writes the angles by which the plane turns from each arc to the next, in radians, counterclockwise about the tangent,
+ * of a closed snake also from the last to the first, if there is room for `capacity` of them, and their number to
+ * `count`.
+ *
+ * # Safety
+ * `torsions` is null or writable for `capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeTorsions(struct ShapeOpSnake *snake,
+                                       double *torsions,
+                                       int capacity,
+                                       int *count);
+
+/**
+ * Writes the arcs of the snake at a frame, or as it is (`SHAPEOP_SNAKE_NOW`), 11 numbers each, if there is room for
+ * `capacity` of them, and their number to `count`: the centre, the radius, the unit vector along the axis, about which
+ * the arc turns counterclockwise, the point where it starts, the angle in radians.
+ *
+ * # Safety
+ * `arcs` is null or writable for `11 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeArcs(struct ShapeOpSnake *snake,
+                                   int frame,
+                                   double *arcs,
+                                   int capacity,
+                                   int *count);
+
+/**
+ * Writes points along the snake at a frame, or as it is (`SHAPEOP_SNAKE_NOW`), `per_arc` intervals in each arc, if there
+ * is room for `capacity` of them, and their number to `count`; the first point of a closed snake is not repeated.
+ *
+ * # Safety
+ * `points` is null or writable for `3 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeSample(struct ShapeOpSnake *snake,
+                                     int frame,
+                                     int per_arc,
+                                     double *points,
+                                     int capacity,
+                                     int *count);
+
+/**
+ * Writes to `free` in how many ways the snake can move to first order, rigid motions among them, in space or, with
+ * `on_surface` 1, where its control points move along its surface; to `conditions` and `rank` how many conditions there
+ * are, and how many of them are independent. Each output may be null.
+ *
+ * # Safety
+ * Each output is null or writable for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeFreedoms(struct ShapeOpSnake *snake,
+                                       int on_surface,
+                                       int *free,
+                                       int *conditions,
+                                       int *rank);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeDefaultFitOptions(struct shapeop_snake_fit_options *options);
+
+/**
+ * Creates the snake of `nb_arcs` arcs of equal length along a polyline of `nb_points` points, open or, with `is_closed`
+ * 1, closed; null if it is refused. Lengths and curvatures are those of the circles through three points in a row.
+ * `options` is null for the defaults; `report` is null, or its `struct_size` is set.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles; `options` and `report` are null, or their `struct_size` is
+ * set and they are readable or writable for so many bytes.
+ */
+SHAPEOP_API
+struct ShapeOpSnake *shapeop_snakeFit(const double *points,
+                                      int nb_points,
+                                      int is_closed,
+                                      int nb_arcs,
+                                      const struct shapeop_snake_fit_options *options,
+                                      struct shapeop_snake_fit_report *report);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeDefaultCurveOptions(struct shapeop_snake_curve_options *options);
+
+/**
+ * Finds the curve of given curvature on a surface of a kind (a `shapeop_snake_surface`) that begins at the nearest point
+ * to `start` in the direction of `tangent`. `curvatures`, `nb_curvatures` of 0 or more, in 1/model units, are those at
+ * evenly spaced places along the length, linear in between; one is that of the whole curve. From a point there is one
+ * curve that turns left and one that turns right as long as the surface itself bends less than the curve along it;
+ * otherwise none (`SO_NO_SOLUTION` at the start; later the curve ends there).
+ *
+ * Writes its points, one for each step and the start, at most 2 more than steps, if there is room for `capacity` of
+ * them, and their number to `count`; to `report`, which is null or has its `struct_size` set, what was found. `options`
+ * is null for the defaults.
+ *
+ * # Safety
+ * `numbers`, `curvatures` and the vectors are null or readable for `nb_numbers`, `nb_curvatures` and 3 doubles;
+ * `points` is null or writable for `3 * capacity` doubles, `count` for one int. `options` and `report` are null, or
+ * their `struct_size` is set and they are readable or writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeCurve(int kind,
+                                    const double *numbers,
+                                    int nb_numbers,
+                                    const double *start,
+                                    const double *tangent,
+                                    const double *curvatures,
+                                    int nb_curvatures,
+                                    double length,
+                                    const struct shapeop_snake_curve_options *options,
+                                    double *points,
+                                    int capacity,
+                                    int *count,
+                                    struct shapeop_snake_curve_report *report);
+
+/**
+ * As `shapeop_snakeCurve`, on a mesh as `shapeop_snakeSetMesh` takes it; `start` is nearer to it than its edges are
+ * long.
+ *
+ * # Safety
+ * As of both.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeMeshCurve(const double *mesh_points,
+                                        int nb_mesh_points,
+                                        const int *face_indices,
+                                        int nb_face_indices,
+                                        const int *counts,
+                                        int nb_counts,
+                                        const double *start,
+                                        const double *tangent,
+                                        const double *curvatures,
+                                        int nb_curvatures,
+                                        double length,
+                                        const struct shapeop_snake_curve_options *options,
+                                        double *points,
+                                        int capacity,
+                                        int *count,
+                                        struct shapeop_snake_curve_report *report);
+
+/**
+ * Takes a mesh as the surface of a snake. The snake stays where it is.
+ *
+ * - `points`: `x0 y0 z0 x1 ...` in model units, `nb_points` points, all of which faces use.
+ * - `face_indices`: the point indices of all faces behind each other, `nb_face_indices` in all; quads are split along
+ *   their shorter diagonal, larger faces into a fan.
+ * - `counts`: the number of corners of each face. `nb_counts` 1: the same for all; otherwise one per face.
+ *
+ * # Safety
+ * Each array is null or readable for its number of values.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeSetMesh(struct ShapeOpSnake *snake,
+                                      const double *points,
+                                      int nb_points,
+                                      const int *face_indices,
+                                      int nb_face_indices,
+                                      const int *counts,
+                                      int nb_counts);
+
+/**
+ * Takes a surface of a kind (a `shapeop_snake_surface`) that `nb_numbers` numbers tell as that of a snake.
+ *
+ * # Safety
+ * `numbers` is null or readable for `nb_numbers` doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeSetSurface(struct ShapeOpSnake *snake,
+                                         int kind,
+                                         const double *numbers,
+                                         int nb_numbers);
+
+/**
+ * Takes the surface of a snake away.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeClearSurface(struct ShapeOpSnake *snake);
+
+/**
+ * Takes the direction (a `shapeop_snake_direction`) in which control points are to move. `along` is a vector of any
+ * length above 0, or null for the other two.
+ *
+ * # Safety
+ * `along` is null or readable for 3 doubles.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeSetDirection(struct ShapeOpSnake *snake, int kind, const double *along);
+
+/**
+ * Takes speeds in that direction, in model units per time: one for all control points, or one for each. At first they
+ * are 1.
+ *
+ * # Safety
+ * `speeds` is null or readable for `nb_speeds` doubles.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeSetSpeeds(struct ShapeOpSnake *snake, const double *speeds, int nb_speeds);
+
+/**
+ * Takes the control points that stay where they are, `nb_points` of them, in place of those before.
+ *
+ * # Safety
+ * `points` is null or readable for `nb_points` ints.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeSetFixed(struct ShapeOpSnake *snake, const int *points, int nb_points);
+
+/**
+ * Wishes that a control point moves with this velocity, in model units per time. What it differs by is squared and
+ * multiplied by `weight`, 0 or more. Wishes add up until `shapeop_snakeClearWishes`.
+ *
+ * # Safety
+ * `velocity` is null or readable for 3 doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeWishVelocity(struct ShapeOpSnake *snake,
+                                           int point,
+                                           const double *velocity,
+                                           double weight);
+
+/**
+ * Wishes that a control point moves in the plane with this normal, of any length above 0, with a weight.
+ *
+ * # Safety
+ * `normal` is null or readable for 3 doubles.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeWishPlane(struct ShapeOpSnake *snake,
+                                        int point,
+                                        const double *normal,
+                                        double weight);
+
+/**
+ * Takes all wishes away.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeClearWishes(struct ShapeOpSnake *snake);
+
+/**
+ * Adds a rail along which a control point runs: the cubic spline through `nb_points` points, open or, with `is_closed`
+ * 1, closed. The run begins at the rail's point nearest to the control point, which is on it. `speed` is in lengths of
+ * the points' polygon per time; below 0 it runs against their order. The rail's number, from 0 on, or -1.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles.
+ */
+SHAPEOP_API
+int shapeop_snakeDriveRail(struct ShapeOpSnake *snake,
+                           int point,
+                           const double *points,
+                           int nb_points,
+                           int is_closed,
+                           double speed);
+
+/**
+ * As `shapeop_snakeDriveRail`, for a control point that runs so that its distance from the point of the rail `leader`,
+ * which is driven, stays.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles.
+ */
+SHAPEOP_API
+int shapeop_snakeFollowRail(struct ShapeOpSnake *snake,
+                            int point,
+                            const double *points,
+                            int nb_points,
+                            int is_closed,
+                            int leader);
+
+/**
+ * Adds a rail that the snake stays in touch with, at whatever place of either: it begins at a contact point of the
+ * snake, and crosses it there.
+ *
+ * # Safety
+ * `points` is null or readable for `3 * nb_points` doubles.
+ */
+SHAPEOP_API
+int shapeop_snakeGlideRail(struct ShapeOpSnake *snake,
+                           int contact,
+                           const double *points,
+                           int nb_points,
+                           int is_closed);
+
+/**
+ * The number of rails, or -1.
+ */
+SHAPEOP_API int shapeop_snakeRailCount(struct ShapeOpSnake *snake);
+
+/**
+ * Takes all rails away.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeClearRails(struct ShapeOpSnake *snake);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeDefaultOptions(struct shapeop_snake_options *options);
+
+/**
+ * Writes the velocities with which the snake would begin to move, in model units per time, if there is room for
+ * `capacity` control points, and their number to `count`; to `residual`, which may be null, by how much they miss a
+ * condition at most: round-off, unless conditions contradict each other. `options` is null for the defaults.
+ *
+ * # Safety
+ * `velocities` is null or writable for `3 * capacity` doubles, `count` for one int, `residual` for one double. `options`
+ * is null, or its `struct_size` is set and it is readable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeVelocity(struct ShapeOpSnake *snake,
+                                       const struct shapeop_snake_options *options,
+                                       double *velocities,
+                                       int capacity,
+                                       int *count,
+                                       double *residual);
+
+/**
+ * Puts the snake to a position near the target, one point for each control point, that its arcs can have; with `is_exact`
+ * 1 to the nearest one. Fixed points stay at their targets; the surface and rails do not count. Of `options`, which is
+ * null for the defaults, `mu`, `is_exact` and `projection_iterations` count. `report` is null, or its `struct_size` is
+ * set. What was found of the snake's motion is forgotten.
+ *
+ * # Safety
+ * `target` is null or readable for `3 * nb_target` doubles; `options` and `report` are null, or their `struct_size` is
+ * set and they are readable or writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeProject(struct ShapeOpSnake *snake,
+                                      const double *target,
+                                      int nb_target,
+                                      const struct shapeop_snake_options *options,
+                                      struct shapeop_snake_projection *report);
+
+/**
+ * Moves a snake step by step. The snake itself stays at its start; the positions are told by `shapeop_snakeFrames` and
+ * others, and `shapeop_snakeTakeFrame` puts the snake to one of them.
+ *
+ * `options` is null for the defaults. `progress` may be null; what ends the call leaves the positions so far. `report`
+ * is null, or its `struct_size` is set.
+ *
+ * # Safety
+ * `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many bytes.
+ * `progress` is null or a function of that signature.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeEvolve(struct ShapeOpSnake *snake,
+                                     const struct shapeop_snake_options *options,
+                                     shapeop_snake_progress_callback progress,
+                                     void *user,
+                                     struct shapeop_snake_evolution *report);
+
+/**
+ * The number of positions that were found last, or -1: nothing was found since the snake was put where it is.
+ */
+SHAPEOP_API int shapeop_snakeFrameCount(struct ShapeOpSnake *snake);
+
+/**
+ * Writes the control points of all positions that were found last, one position after the other, if there is room for
+ * `capacity` points, and their number to `count`.
+ *
+ * # Safety
+ * `control` is null or writable for `3 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeFrames(struct ShapeOpSnake *snake, double *control, int capacity, int *count);
+
+/**
+ * Writes the frames of the last evolution, 6 numbers each, if there is room for `capacity` of them, and their number to
+ * `count`: the time; the deviation from the surface; by how much a distance or a rail is missed at most; by how much a
+ * height differs from that at the start at most; by how much a distance of control points three apart is off, where
+ * those are kept; by how much the velocities that led there miss a condition. In model units and times.
+ *
+ * # Safety
+ * `rows` is null or writable for `6 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeFrameRows(struct ShapeOpSnake *snake, double *rows, int capacity, int *count);
+
+/**
+ * Puts the snake to a position that was found last, from which it can move on. What was found is forgotten.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeTakeFrame(struct ShapeOpSnake *snake, int frame);
+
+/**
+ * Tells how far two positions, `a` and `b`, of those found last are from being the same up to a rigid motion, in model
+ * units: to `rms` the root of the mean squared distance of control points after the motion for which it is least; to
+ * `distances` by how much the distance of any two control points differs at most. Each output may be null.
+ *
+ * # Safety
+ * Each output is null or writable for one double.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeCongruence(struct ShapeOpSnake *snake,
+                                         int a,
+                                         int b,
+                                         double *rms,
+                                         double *distances);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeDefaultCycleOptions(struct shapeop_snake_cycle_options *options);
+
+/**
+ * Moves an open snake whose first two control points and last two are fixed, so that its end arcs turn about hinges,
+ * until it is back where it began; one of six arcs can move in one way. The snake itself stays at its start; the
+ * positions are told by `shapeop_snakeFrames` and others.
+ *
+ * `options` is null for the defaults. `progress` may be null; what ends the call leaves the positions so far. `report`
+ * is null, or its `struct_size` is set.
+ *
+ * # Safety
+ * `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many bytes.
+ * `progress` is null or a function of that signature.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeCycle(struct ShapeOpSnake *snake,
+                                    const struct shapeop_snake_cycle_options *options,
+                                    shapeop_snake_progress_callback progress,
+                                    void *user,
+                                    struct shapeop_snake_cycle *report);
+
+/**
+ * In how many independent ways an open snake can move whose first two control points and last two are fixed, or -1: one
+ * of six arcs in one way, unless it is in a special position.
+ */
+SHAPEOP_API int shapeop_snakeLinkageFreedoms(struct ShapeOpSnake *snake);
+
+/**
+ * Writes the determinant of the Plücker coordinates of the first six hinges of a linkage of six arcs to `determinant`,
+ * moments in units of its size. It is 0 in singular positions; below 1e-6 or so one is near.
+ *
+ * # Safety
+ * `determinant` is null or writable for one double.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeDeterminant(struct ShapeOpSnake *snake, double *determinant);
+
+/**
+ * Writes by how much the first and the last arc of the linkage are turned at each frame, 2 angles in radians each, if
+ * there is room for `capacity` frames, and their number to `count`: counterclockwise about the first edge and the last.
+ *
+ * # Safety
+ * `angles` is null or writable for `2 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeCycleAngles(struct ShapeOpSnake *snake,
+                                          double *angles,
+                                          int capacity,
+                                          int *count);
+
+/**
+ * Writes the path of a contact point of the linkage, one point for each frame, if there is room for `capacity` of them,
+ * and their number to `count`.
+ *
+ * # Safety
+ * `points` is null or writable for `3 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeContactPath(struct ShapeOpSnake *snake,
+                                          int contact,
+                                          double *points,
+                                          int capacity,
+                                          int *count);
+
+/**
+ * Writes the control points of the linkage at phases of its motion, one position after the other, if there is room for
+ * `capacity` points, and their number to `count`. A phase of 0 is the start, 1 the start again, or the last position of a
+ * motion that is not closed; phases go with the length of the way. Arcs keep their shapes to round-off.
+ *
+ * # Safety
+ * `phases` is null or readable for `nb_phases` doubles; `control` is null or writable for `3 * capacity` doubles, `count`
+ * for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeAtPhases(struct ShapeOpSnake *snake,
+                                       const double *phases,
+                                       int nb_phases,
+                                       double *control,
+                                       int capacity,
+                                       int *count);
+
+/**
+ * Writes the control points of `nb_copies` copies of the linkage that move together, one copy after the other, if there
+ * is room for `capacity` points, and their number to `count`: copy `k` is at the phase `phase + k * shift`, and moved by
+ * `k` times `offset`.
+ *
+ * # Safety
+ * `offset` is null or readable for 3 doubles; `control` is null or writable for `3 * capacity` doubles, `count` for one
+ * int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeCopies(struct ShapeOpSnake *snake,
+                                     int nb_copies,
+                                     double phase,
+                                     double shift,
+                                     const double *offset,
+                                     double *control,
+                                     int capacity,
+                                     int *count);
+
+/**
+ * Writes the surface that the positions found last sweep as a mesh of quads: a row of points for each position,
+ * `per_arc` intervals in each arc, as `shapeop_snakeSample` has them. With `comes_back` 1 the last position is followed by
+ * the first. Points are written if there is room for `capacity` of them, and their number to `count`; quads, four points
+ * each, if there is room for `quad_capacity` of them, and their number to `quad_count`.
+ *
+ * # Safety
+ * `points` is null or writable for `3 * capacity` doubles, `quads` for `4 * quad_capacity` ints, `count` and
+ * `quad_count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeSweepMesh(struct ShapeOpSnake *snake,
+                                        int per_arc,
+                                        int comes_back,
+                                        double *points,
+                                        int capacity,
+                                        int *count,
+                                        int *quads,
+                                        int quad_capacity,
+                                        int *quad_count);
+
+/**
+ * Writes the pipe of a radius around the snake at a frame, or as it is (`SHAPEOP_SNAKE_NOW`), as a mesh of quads that
+ * face outward: `around` points, 3 or more, in each section, `per_arc` intervals in each arc. Outputs are as those of
+ * `shapeop_snakeSweepMesh`.
+ *
+ * # Safety
+ * As `shapeop_snakeSweepMesh`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakePipe(struct ShapeOpSnake *snake,
+                                   int frame,
+                                   double radius,
+                                   int per_arc,
+                                   int around,
+                                   double *points,
+                                   int capacity,
+                                   int *count,
+                                   int *quads,
+                                   int quad_capacity,
+                                   int *quad_count);
+
+/**
+ * Writes the lamellae of a depth along the snake at a frame, or as it is (`SHAPEOP_SNAKE_NOW`), as a mesh of quads,
+ * `per_arc` intervals in each arc. How they stand says `kind`, a `shapeop_snake_lamella`; `along` is a vector of any
+ * length above 0, or null for the others. Flat ones are `depth` farther from the centres of the arcs, or nearer if it is
+ * negative. Outputs are as those of `shapeop_snakeSweepMesh`.
+ *
+ * # Safety
+ * `along` is null or readable for 3 doubles; else as `shapeop_snakeSweepMesh`.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeLamellae(struct ShapeOpSnake *snake,
+                                       int frame,
+                                       int kind,
+                                       const double *along,
+                                       double depth,
+                                       int per_arc,
+                                       double *points,
+                                       int capacity,
+                                       int *count,
+                                       int *quads,
+                                       int quad_capacity,
+                                       int *quad_count);
+
+/**
+ * Writes the kinds of arcs that one position of the snake is made of, 3 numbers each, if there is room for `capacity` of
+ * them, and their number to `count`: the radius, the length, how many there are. Arcs are of one kind if radii and
+ * lengths are both within `tolerance` of the first's, relative to its. All positions have the same arcs.
+ *
+ * # Safety
+ * `kinds` is null or writable for `3 * capacity` doubles, `count` for one int.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeKinds(struct ShapeOpSnake *snake,
+                                    double tolerance,
+                                    double *kinds,
+                                    int capacity,
+                                    int *count);
+
+/**
+ * Writes of which kind each arc is, as `shapeop_snakeKinds` numbers them, if there is room for `capacity` arcs, and
+ * their number to `count`.
+ *
+ * # Safety
+ * `kind_of` is null or writable for `capacity` ints, `count` for one.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeKindOf(struct ShapeOpSnake *snake,
+                                     double tolerance,
+                                     int *kind_of,
+                                     int capacity,
+                                     int *count);
+
+/**
+ * Creates a snake from its JSON form (`docs/snake.schema.json`); null if it is refused.
+ *
+ * # Safety
+ * `json` is null or ends with a zero.
+ */
+SHAPEOP_API struct ShapeOpSnake *shapeop_snakeCreateFromText(const char *json);
+
+/**
+ * The JSON form of a snake as it is (`docs/snake.schema.json`); null if it is refused. The text is the calling thread's
+ * own, valid until that thread's next call of a function of snakes that answers with a text.
+ */
+SHAPEOP_API const char *shapeop_snakeText(struct ShapeOpSnake *snake);
+
+/**
+ * The arcs of the snake at a frame, as it is (`SHAPEOP_SNAKE_NOW`) or at all positions found last (`SHAPEOP_SNAKE_ALL`)
+ * as JSON (`docs/snake-arcs.schema.json`); null if it is refused. Arcs are of one kind if radii and lengths are both
+ * within `tolerance` of the first's, relative to its. The text is valid as long as that of `shapeop_snakeText`.
+ */
+SHAPEOP_API const char *shapeop_snakeArcsText(struct ShapeOpSnake *snake, int frame, double tolerance);
+
+/**
+ * The same as a table, a line for each arc: frame, arc, kind, centre, radius, axis, start, angle in radians, length.
+ */
+SHAPEOP_API const char *shapeop_snakeArcsCsv(struct ShapeOpSnake *snake, int frame, double tolerance);
+
+/**
+ * The kinds of arcs of the same as a table, a line for each: kind, radius, length, count.
+ */
+SHAPEOP_API const char *shapeop_snakeKindsCsv(struct ShapeOpSnake *snake, int frame, double tolerance);
+
+/**
+ * The same arcs as a DXF drawing, a layer for each kind.
+ */
+SHAPEOP_API const char *shapeop_snakeArcsDxf(struct ShapeOpSnake *snake, int frame, double tolerance);
 
 #ifdef __cplusplus
 }  // extern "C"

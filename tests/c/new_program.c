@@ -188,6 +188,44 @@ static void strips(void) {
     check(shapeop_ruledStripCount(design) == -1, "a deleted design is refused");
 }
 
+static int stop_at_two(const shapeop_snake_progress *progress, void *user) {
+    *(int *)user += 1;
+    return progress->step >= 2;
+}
+
+static void snakes(void) {
+    const double one[] = {1, 1, 1, 1, 1, 1}, torsions[] = {1, -0.7, 0.9, -0.8, 0.6}, up[] = {0, 0, 2};
+    const double origin[] = {0, 0, 0}, x[] = {1, 0, 0}, y[] = {0, 1, 0};
+    double control[3 * 8], frames[3 * 8 * 3], sum = 0;
+    int count = 0, calls = 0, i;
+    shapeop_snake_report told;
+    shapeop_snake_evolution found;
+    ShapeOpSnake *snake = shapeop_snakeCreateFromArcs(one, one, 6, torsions, 5, origin, x, y);
+    check(snake != NULL, "snakeCreateFromArcs");
+    memset(&told, 0, sizeof told);
+    told.struct_size = sizeof told;
+    check(shapeop_snakeReport(snake, &told) == SO_SUCCESS && told.control_count == 8, "snakeReport");
+    check(fabs(told.length - 6) < 1e-12 && told.residual < 1e-12, "the length of the arcs");
+    check(shapeop_snakeControl(snake, NULL, 0, &count) == SO_SUCCESS && count == 8, "the number of control points");
+    check(shapeop_snakeControl(snake, control, count, &count) == SO_SUCCESS, "snakeControl");
+    check(shapeop_snakeSetDirection(snake, SO_SNAKE_DIRECTION_ALONG, up) == SO_SUCCESS, "snakeSetDirection");
+    check(shapeop_snakeFrameCount(snake) == -1, "no frames yet");
+    check(strstr(shapeop_lastError(NULL), "evolve") != NULL, "the message says what comes first");
+    memset(&found, 0, sizeof found);
+    found.struct_size = sizeof found;
+    check(shapeop_snakeEvolve(snake, NULL, stop_at_two, &calls, &found) == SO_SUCCESS, "snakeEvolve");
+    check(calls == 3 && found.stop == SO_SNAKE_STOP_CANCELLED && found.frame_count == 3, "a run is cancelled");
+    check(shapeop_snakeFrames(snake, frames, 24, &count) == SO_SUCCESS && count == 24, "snakeFrames");
+    for (i = 0; i < 8; ++i) {
+        sum += fabs(frames[48 + 3 * i + 2] - control[3 * i + 2] - found.time);
+    }
+    check(sum < 1e-6, "all points moved up");
+    check(shapeop_snakeLinkageFreedoms(snake) == 1, "snakeLinkageFreedoms");
+    check(strstr(shapeop_snakeKindsCsv(snake, SHAPEOP_SNAKE_ALL, 1e-6), ",18\n") != NULL, "one kind of arc, 18 times");
+    shapeop_snakeDelete(snake);
+    check(shapeop_snakeRailCount(snake) == -1, "a deleted snake is refused");
+}
+
 int main(void) {
     printf("shapeop %s\n", shapeop_version());
     list_types();
@@ -195,5 +233,6 @@ int main(void) {
     mistakes();
     surfaces();
     strips();
+    snakes();
     return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -9,6 +9,7 @@ mod calls;
 mod canal;
 mod canal_shapes;
 mod ruled;
+mod snakes;
 
 use std::ffi::{CString, c_int, c_void};
 use std::ptr;

@@ -19,17 +19,17 @@ namespace ShapeOp
         UnmatchingConstraintId = 3,
         /// <summary>A number is outside its domain, or not finite.</summary>
         InvalidValue = 16,
-        /// <summary>A point index is out of range.</summary>
+        /// <summary>An index is out of range.</summary>
         IndexOutOfRange = 17,
         /// <summary>The id is no force of that kind.</summary>
         UnmatchingForceId = 18,
-        /// <summary>The solver was not initialised.</summary>
+        /// <summary>Another call must come first: a solver is not initialised, or nothing was found yet that could be told.</summary>
         NotInitialised = 19,
         /// <summary>A force acts along a motion that no constraint resists.</summary>
         Unbounded = 20,
-        /// <summary>Another call is using the solver.</summary>
+        /// <summary>Another call is using the solver, surface, design or snake.</summary>
         Busy = 21,
-        /// <summary>The handle is null, was deleted, or never was a solver's.</summary>
+        /// <summary>The handle is null, was deleted, or never was one of such an object.</summary>
         InvalidHandle = 22,
         /// <summary>A required pointer is null.</summary>
         NullPointer = 23,
@@ -51,7 +51,7 @@ namespace ShapeOp
         NoIntersection = 31,
         /// <summary>No solution exists for this input.</summary>
         NoSolution = 32,
-        /// <summary>Opposite edges of a quad are parallel where the fourth corner is found by meeting them.</summary>
+        /// <summary>Equations do not determine an answer: edges of a quad that are to meet are parallel, or derivatives lose rank.</summary>
         Singular = 33,
         /// <summary>A ring does not close.</summary>
         NotClosed = 34,
@@ -290,6 +290,93 @@ namespace ShapeOp
         LineSearch = 3,
         /// <summary>The callback said so.</summary>
         Cancelled = 4,
+    }
+
+    /// <summary>Why a curve of given curvature ends.</summary>
+    public enum SnakeCurveEnd
+    {
+        /// <summary>It is as long as asked for.</summary>
+        Length = 0,
+        /// <summary>At the boundary of the surface.</summary>
+        Boundary = 1,
+        /// <summary>The surface itself bends more along the curve than the curve may.</summary>
+        BendsMore = 2,
+        /// <summary>The surface has no tangent plane there, or folds.</summary>
+        Fold = 3,
+    }
+
+    /// <summary>A surface that a few numbers tell. Normals point outward, that of a plane as given.</summary>
+    public enum SnakeSurface
+    {
+        /// <summary>A point and the normal: 6 numbers.</summary>
+        Plane = 0,
+        /// <summary>The centre and the radius: 4 numbers.</summary>
+        Sphere = 1,
+        /// <summary>A point of the axis, its direction, the radius: 7 numbers.</summary>
+        Cylinder = 2,
+        /// <summary>
+        /// The centre, the direction of the axis, the distance of the tube's middle from it, the radius of the tube: 8
+        /// numbers.
+        /// </summary>
+        Torus = 3,
+    }
+
+    /// <summary>Which way control points are to move.</summary>
+    public enum SnakeDirection
+    {
+        /// <summary>None is given: rails or other wishes say it. So it is at first.</summary>
+        Free = 0,
+        /// <summary>To the left of the snake within its surface, seen from the side that the surface's normals point to.</summary>
+        Sideways = 1,
+        /// <summary>All along one vector.</summary>
+        Along = 2,
+    }
+
+    /// <summary>Why an evolution stopped.</summary>
+    public enum SnakeStop
+    {
+        /// <summary>All steps were made.</summary>
+        Steps = 0,
+        /// <summary>The next position would be farther from the surface than allowed: see stop_distance.</summary>
+        Deviation = 1,
+        /// <summary>Velocities, or positions, are not determined.</summary>
+        Singular = 2,
+        /// <summary>A rail ended, or the snake left it: see stop_rail and stop_distance.</summary>
+        RailEnd = 3,
+        /// <summary>A rail that the snake glides on became parallel to it: see stop_rail.</summary>
+        Parallel = 4,
+        /// <summary>The snake is back at its start.</summary>
+        Cycle = 5,
+        /// <summary>It does not move any more.</summary>
+        Stalled = 6,
+        /// <summary>The callback said so.</summary>
+        Cancelled = 7,
+    }
+
+    /// <summary>Why a linkage's motion ends.</summary>
+    public enum SnakeCycleEnd
+    {
+        /// <summary>It came back to the start.</summary>
+        Closed = 0,
+        /// <summary>All steps were used.</summary>
+        Steps = 1,
+        /// <summary>At the last position it can move in another number of ways than one: see free.</summary>
+        Freedoms = 2,
+        /// <summary>No step leads on.</summary>
+        Stalled = 3,
+        /// <summary>The callback said so.</summary>
+        Cancelled = 4,
+    }
+
+    /// <summary>How lamellae stand.</summary>
+    public enum SnakeLamella
+    {
+        /// <summary>In the planes of the arcs: a sector of a ring for each, which share no points.</summary>
+        Flat = 0,
+        /// <summary>Along the normals of the snake's surface: one band.</summary>
+        Normal = 1,
+        /// <summary>Along one vector: one band.</summary>
+        Along = 2,
     }
 
     internal static class Native
@@ -729,6 +816,148 @@ namespace ShapeOp
             internal double offcut;
         }
 
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_report
+        {
+            internal uint struct_size;
+            internal uint arc_count;
+            internal uint control_count;
+            internal int is_closed;
+            internal double length;
+            internal double residual;
+            internal double deviation;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_fit_options
+        {
+            internal uint struct_size;
+            internal int is_congruent;
+            internal uint max_iterations;
+            internal uint reserved;
+            internal double curvature;
+            internal double nearness;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_fit_report
+        {
+            internal uint struct_size;
+            internal uint iterations;
+            internal int is_converged;
+            internal uint reserved;
+            internal double deviation;
+            internal double residual;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_curve_options
+        {
+            internal uint struct_size;
+            internal int turns_right;
+            internal uint steps;
+            internal int method;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_curve_report
+        {
+            internal uint struct_size;
+            internal SnakeCurveEnd end;
+            internal double length;
+            internal double curvature;
+            internal double normal_curvature;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_progress
+        {
+            internal uint struct_size;
+            internal uint step;
+            internal double fraction;
+            internal double time;
+            internal double deviation;
+            internal double residual;
+            internal double first_angle;
+            internal double last_angle;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_options
+        {
+            internal uint struct_size;
+            internal uint max_steps;
+            internal int is_second_order;
+            internal int keeps_torsions;
+            internal int stops_at_cycle;
+            internal int is_exact;
+            internal uint projection_iterations;
+            internal uint reserved;
+            internal double step;
+            internal double least_step;
+            internal double max_deviation;
+            internal double tangential;
+            internal double offset;
+            internal double rotation;
+            internal double orthogonal;
+            internal double alpha;
+            internal double mu;
+            internal double surface_weight;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_evolution
+        {
+            internal uint struct_size;
+            internal SnakeStop stop;
+            internal int stop_rail;
+            internal uint frame_count;
+            internal double stop_distance;
+            internal double time;
+            internal double deviation;
+            internal double residual;
+            internal double height_residual;
+            internal double incongruence;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_projection
+        {
+            internal uint struct_size;
+            internal uint iterations;
+            internal uint steps;
+            internal int is_nearest;
+            internal double residual;
+            internal double moved;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_cycle_options
+        {
+            internal uint struct_size;
+            internal uint max_steps;
+            internal int is_reversed;
+            internal uint reserved;
+            internal double step;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_cycle
+        {
+            internal uint struct_size;
+            internal SnakeCycleEnd end;
+            internal uint free;
+            internal uint frame_count;
+            internal int first_turns;
+            internal int last_turns;
+            internal uint switch_count;
+            internal uint reserved;
+            internal double closing;
+            internal double first_range;
+            internal double last_range;
+            internal double residual;
+        }
+
         [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
         internal delegate int shapeop_progress_callback(ref shapeop_progress progress, IntPtr user);
 
@@ -737,6 +966,9 @@ namespace ShapeOp
 
         [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
         internal delegate int shapeop_ruled_progress_callback(ref shapeop_ruled_progress progress, IntPtr user);
+
+        [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+        internal delegate int shapeop_snake_progress_callback(ref shapeop_snake_progress progress, IntPtr user);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern IntPtr shapeop_version();
@@ -2287,5 +2519,400 @@ namespace ShapeOp
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern IntPtr shapeop_ruledPlanksSvg(RuledHandle design, byte[] name, double millimetres);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern SnakeHandle shapeop_snakeCreate(
+            double[] control,
+            int nbControl,
+            int isClosed,
+            double firstTangent);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern SnakeHandle shapeop_snakeCreateFromArcs(
+            double[] radii,
+            double[] lengths,
+            int nbArcs,
+            double[] torsions,
+            int nbTorsions,
+            double[] point,
+            double[] tangent,
+            double[] normal);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern SnakeHandle shapeop_snakeCopy(SnakeHandle snake);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern void shapeop_snakeDelete(IntPtr snake);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeReport(SnakeHandle snake, ref shapeop_snake_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeControl(
+            SnakeHandle snake,
+            double[] control,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeSetControl(SnakeHandle snake, double[] control, int nbControl);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeContacts(
+            SnakeHandle snake,
+            double[] contacts,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeShapes(
+            SnakeHandle snake,
+            double[] radii,
+            double[] lengths,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeTorsions(
+            SnakeHandle snake,
+            double[] torsions,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeArcs(
+            SnakeHandle snake,
+            int frame,
+            double[] arcs,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeSample(
+            SnakeHandle snake,
+            int frame,
+            int perArc,
+            double[] points,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeFreedoms(
+            SnakeHandle snake,
+            int onSurface,
+            int[] free,
+            int[] conditions,
+            int[] rank);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeDefaultFitOptions(ref shapeop_snake_fit_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern SnakeHandle shapeop_snakeFit(
+            double[] points,
+            int nbPoints,
+            int isClosed,
+            int nbArcs,
+            ref shapeop_snake_fit_options options,
+            ref shapeop_snake_fit_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeDefaultCurveOptions(ref shapeop_snake_curve_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeCurve(
+            int kind,
+            double[] numbers,
+            int nbNumbers,
+            double[] start,
+            double[] tangent,
+            double[] curvatures,
+            int nbCurvatures,
+            double length,
+            ref shapeop_snake_curve_options options,
+            double[] points,
+            int capacity,
+            int[] count,
+            ref shapeop_snake_curve_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeMeshCurve(
+            double[] meshPoints,
+            int nbMeshPoints,
+            int[] faceIndices,
+            int nbFaceIndices,
+            int[] counts,
+            int nbCounts,
+            double[] start,
+            double[] tangent,
+            double[] curvatures,
+            int nbCurvatures,
+            double length,
+            ref shapeop_snake_curve_options options,
+            double[] points,
+            int capacity,
+            int[] count,
+            ref shapeop_snake_curve_report report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeSetMesh(
+            SnakeHandle snake,
+            double[] points,
+            int nbPoints,
+            int[] faceIndices,
+            int nbFaceIndices,
+            int[] counts,
+            int nbCounts);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeSetSurface(
+            SnakeHandle snake,
+            int kind,
+            double[] numbers,
+            int nbNumbers);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeClearSurface(SnakeHandle snake);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeSetDirection(SnakeHandle snake, int kind, double[] along);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeSetSpeeds(SnakeHandle snake, double[] speeds, int nbSpeeds);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeSetFixed(SnakeHandle snake, int[] points, int nbPoints);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeWishVelocity(
+            SnakeHandle snake,
+            int point,
+            double[] velocity,
+            double weight);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeWishPlane(
+            SnakeHandle snake,
+            int point,
+            double[] normal,
+            double weight);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeClearWishes(SnakeHandle snake);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_snakeDriveRail(
+            SnakeHandle snake,
+            int point,
+            double[] points,
+            int nbPoints,
+            int isClosed,
+            double speed);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_snakeFollowRail(
+            SnakeHandle snake,
+            int point,
+            double[] points,
+            int nbPoints,
+            int isClosed,
+            int leader);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_snakeGlideRail(
+            SnakeHandle snake,
+            int contact,
+            double[] points,
+            int nbPoints,
+            int isClosed);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_snakeRailCount(SnakeHandle snake);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeClearRails(SnakeHandle snake);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeDefaultOptions(ref shapeop_snake_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeVelocity(
+            SnakeHandle snake,
+            ref shapeop_snake_options options,
+            double[] velocities,
+            int capacity,
+            int[] count,
+            double[] residual);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeProject(
+            SnakeHandle snake,
+            double[] target,
+            int nbTarget,
+            ref shapeop_snake_options options,
+            ref shapeop_snake_projection report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeEvolve(
+            SnakeHandle snake,
+            ref shapeop_snake_options options,
+            shapeop_snake_progress_callback progress,
+            IntPtr user,
+            ref shapeop_snake_evolution report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_snakeFrameCount(SnakeHandle snake);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeFrames(
+            SnakeHandle snake,
+            double[] control,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeFrameRows(
+            SnakeHandle snake,
+            double[] rows,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeTakeFrame(SnakeHandle snake, int frame);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeCongruence(
+            SnakeHandle snake,
+            int a,
+            int b,
+            double[] rms,
+            double[] distances);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeDefaultCycleOptions(ref shapeop_snake_cycle_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeCycle(
+            SnakeHandle snake,
+            ref shapeop_snake_cycle_options options,
+            shapeop_snake_progress_callback progress,
+            IntPtr user,
+            ref shapeop_snake_cycle report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_snakeLinkageFreedoms(SnakeHandle snake);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeDeterminant(SnakeHandle snake, double[] determinant);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeCycleAngles(
+            SnakeHandle snake,
+            double[] angles,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeContactPath(
+            SnakeHandle snake,
+            int contact,
+            double[] points,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeAtPhases(
+            SnakeHandle snake,
+            double[] phases,
+            int nbPhases,
+            double[] control,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeCopies(
+            SnakeHandle snake,
+            int nbCopies,
+            double phase,
+            double shift,
+            double[] offset,
+            double[] control,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeSweepMesh(
+            SnakeHandle snake,
+            int perArc,
+            int comesBack,
+            double[] points,
+            int capacity,
+            int[] count,
+            int[] quads,
+            int quadCapacity,
+            int[] quadCount);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakePipe(
+            SnakeHandle snake,
+            int frame,
+            double radius,
+            int perArc,
+            int around,
+            double[] points,
+            int capacity,
+            int[] count,
+            int[] quads,
+            int quadCapacity,
+            int[] quadCount);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeLamellae(
+            SnakeHandle snake,
+            int frame,
+            int kind,
+            double[] along,
+            double depth,
+            int perArc,
+            double[] points,
+            int capacity,
+            int[] count,
+            int[] quads,
+            int quadCapacity,
+            int[] quadCount);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeKinds(
+            SnakeHandle snake,
+            double tolerance,
+            double[] kinds,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeKindOf(
+            SnakeHandle snake,
+            double tolerance,
+            int[] kindOf,
+            int capacity,
+            int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern SnakeHandle shapeop_snakeCreateFromText(byte[] json);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_snakeText(SnakeHandle snake);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_snakeArcsText(SnakeHandle snake, int frame, double tolerance);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_snakeArcsCsv(SnakeHandle snake, int frame, double tolerance);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_snakeKindsCsv(SnakeHandle snake, int frame, double tolerance);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_snakeArcsDxf(SnakeHandle snake, int frame, double tolerance);
     }
 }

@@ -138,6 +138,45 @@ SO_RULED_STOP_ITERATIONS = 2
 SO_RULED_STOP_LINE_SEARCH = 3
 SO_RULED_STOP_CANCELLED = 4
 
+# shapeop_snake_curve_end
+SO_SNAKE_CURVE_LENGTH = 0
+SO_SNAKE_CURVE_BOUNDARY = 1
+SO_SNAKE_CURVE_BENDS_MORE = 2
+SO_SNAKE_CURVE_FOLD = 3
+
+# shapeop_snake_surface
+SO_SNAKE_SURFACE_PLANE = 0
+SO_SNAKE_SURFACE_SPHERE = 1
+SO_SNAKE_SURFACE_CYLINDER = 2
+SO_SNAKE_SURFACE_TORUS = 3
+
+# shapeop_snake_direction
+SO_SNAKE_DIRECTION_FREE = 0
+SO_SNAKE_DIRECTION_SIDEWAYS = 1
+SO_SNAKE_DIRECTION_ALONG = 2
+
+# shapeop_snake_stop
+SO_SNAKE_STOP_STEPS = 0
+SO_SNAKE_STOP_DEVIATION = 1
+SO_SNAKE_STOP_SINGULAR = 2
+SO_SNAKE_STOP_RAIL_END = 3
+SO_SNAKE_STOP_PARALLEL = 4
+SO_SNAKE_STOP_CYCLE = 5
+SO_SNAKE_STOP_STALLED = 6
+SO_SNAKE_STOP_CANCELLED = 7
+
+# shapeop_snake_cycle_end
+SO_SNAKE_CYCLE_CLOSED = 0
+SO_SNAKE_CYCLE_STEPS = 1
+SO_SNAKE_CYCLE_FREEDOMS = 2
+SO_SNAKE_CYCLE_STALLED = 3
+SO_SNAKE_CYCLE_CANCELLED = 4
+
+# shapeop_snake_lamella
+SO_SNAKE_LAMELLA_FLAT = 0
+SO_SNAKE_LAMELLA_NORMAL = 1
+SO_SNAKE_LAMELLA_ALONG = 2
+
 
 class shapeop_constraint_type(ctypes.Structure):
     _fields_ = [
@@ -571,9 +610,152 @@ class shapeop_ruled_plank(ctypes.Structure):
     ]
 
 
+class shapeop_snake_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("arc_count", c_uint),
+        ("control_count", c_uint),
+        ("is_closed", c_int),
+        ("length", c_double),
+        ("residual", c_double),
+        ("deviation", c_double),
+    ]
+
+
+class shapeop_snake_fit_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("is_congruent", c_int),
+        ("max_iterations", c_uint),
+        ("reserved", c_uint),
+        ("curvature", c_double),
+        ("nearness", c_double),
+    ]
+
+
+class shapeop_snake_fit_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("iterations", c_uint),
+        ("is_converged", c_int),
+        ("reserved", c_uint),
+        ("deviation", c_double),
+        ("residual", c_double),
+    ]
+
+
+class shapeop_snake_curve_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("turns_right", c_int),
+        ("steps", c_uint),
+        ("method", c_int),
+    ]
+
+
+class shapeop_snake_curve_report(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("end", c_int),
+        ("length", c_double),
+        ("curvature", c_double),
+        ("normal_curvature", c_double),
+    ]
+
+
+class shapeop_snake_progress(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("step", c_uint),
+        ("fraction", c_double),
+        ("time", c_double),
+        ("deviation", c_double),
+        ("residual", c_double),
+        ("first_angle", c_double),
+        ("last_angle", c_double),
+    ]
+
+
+class shapeop_snake_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("max_steps", c_uint),
+        ("is_second_order", c_int),
+        ("keeps_torsions", c_int),
+        ("stops_at_cycle", c_int),
+        ("is_exact", c_int),
+        ("projection_iterations", c_uint),
+        ("reserved", c_uint),
+        ("step", c_double),
+        ("least_step", c_double),
+        ("max_deviation", c_double),
+        ("tangential", c_double),
+        ("offset", c_double),
+        ("rotation", c_double),
+        ("orthogonal", c_double),
+        ("alpha", c_double),
+        ("mu", c_double),
+        ("surface_weight", c_double),
+    ]
+
+
+class shapeop_snake_evolution(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("stop", c_int),
+        ("stop_rail", c_int),
+        ("frame_count", c_uint),
+        ("stop_distance", c_double),
+        ("time", c_double),
+        ("deviation", c_double),
+        ("residual", c_double),
+        ("height_residual", c_double),
+        ("incongruence", c_double),
+    ]
+
+
+class shapeop_snake_projection(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("iterations", c_uint),
+        ("steps", c_uint),
+        ("is_nearest", c_int),
+        ("residual", c_double),
+        ("moved", c_double),
+    ]
+
+
+class shapeop_snake_cycle_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("max_steps", c_uint),
+        ("is_reversed", c_int),
+        ("reserved", c_uint),
+        ("step", c_double),
+    ]
+
+
+class shapeop_snake_cycle(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("end", c_int),
+        ("free", c_uint),
+        ("frame_count", c_uint),
+        ("first_turns", c_int),
+        ("last_turns", c_int),
+        ("switch_count", c_uint),
+        ("reserved", c_uint),
+        ("closing", c_double),
+        ("first_range", c_double),
+        ("last_range", c_double),
+        ("residual", c_double),
+    ]
+
+
 shapeop_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_progress), c_void_p)
 shapeop_canal_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_canal_progress), c_void_p)
 shapeop_ruled_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_ruled_progress), c_void_p)
+shapeop_snake_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_snake_progress), c_void_p)
 
 # What each function returns, and what it takes.
 FUNCTIONS = {
@@ -1710,6 +1892,229 @@ FUNCTIONS = {
     "shapeop_ruledDowels": (c_int, [c_void_p, c_int, POINTER(c_double), c_int, POINTER(c_int)]),
     "shapeop_ruledPlanksText": (c_char_p, [c_void_p]),
     "shapeop_ruledPlanksSvg": (c_char_p, [c_void_p, c_char_p, c_double]),
+    "shapeop_snakeCreate": (c_void_p, [POINTER(c_double), c_int, c_int, c_double]),
+    "shapeop_snakeCreateFromArcs": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_snakeCopy": (c_void_p, [c_void_p]),
+    "shapeop_snakeDelete": (None, [c_void_p]),
+    "shapeop_snakeReport": (c_int, [c_void_p, POINTER(shapeop_snake_report)]),
+    "shapeop_snakeControl": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeSetControl": (c_int, [c_void_p, POINTER(c_double), c_int]),
+    "shapeop_snakeContacts": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeShapes": (c_int, [c_void_p, POINTER(c_double), POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeTorsions": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeArcs": (c_int, [c_void_p, c_int, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeSample": (c_int, [c_void_p, c_int, c_int, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeFreedoms": (c_int, [c_void_p, c_int, POINTER(c_int), POINTER(c_int), POINTER(c_int)]),
+    "shapeop_snakeDefaultFitOptions": (c_int, [POINTER(shapeop_snake_fit_options)]),
+    "shapeop_snakeFit": (
+        c_void_p,
+        [
+            POINTER(c_double),
+            c_int,
+            c_int,
+            c_int,
+            POINTER(shapeop_snake_fit_options),
+            POINTER(shapeop_snake_fit_report),
+        ],
+    ),
+    "shapeop_snakeDefaultCurveOptions": (c_int, [POINTER(shapeop_snake_curve_options)]),
+    "shapeop_snakeCurve": (
+        c_int,
+        [
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            c_double,
+            POINTER(shapeop_snake_curve_options),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(shapeop_snake_curve_report),
+        ],
+    ),
+    "shapeop_snakeMeshCurve": (
+        c_int,
+        [
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_double),
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            c_double,
+            POINTER(shapeop_snake_curve_options),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(shapeop_snake_curve_report),
+        ],
+    ),
+    "shapeop_snakeSetMesh": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+            c_int,
+        ],
+    ),
+    "shapeop_snakeSetSurface": (c_int, [c_void_p, c_int, POINTER(c_double), c_int]),
+    "shapeop_snakeClearSurface": (c_int, [c_void_p]),
+    "shapeop_snakeSetDirection": (c_int, [c_void_p, c_int, POINTER(c_double)]),
+    "shapeop_snakeSetSpeeds": (c_int, [c_void_p, POINTER(c_double), c_int]),
+    "shapeop_snakeSetFixed": (c_int, [c_void_p, POINTER(c_int), c_int]),
+    "shapeop_snakeWishVelocity": (c_int, [c_void_p, c_int, POINTER(c_double), c_double]),
+    "shapeop_snakeWishPlane": (c_int, [c_void_p, c_int, POINTER(c_double), c_double]),
+    "shapeop_snakeClearWishes": (c_int, [c_void_p]),
+    "shapeop_snakeDriveRail": (c_int, [c_void_p, c_int, POINTER(c_double), c_int, c_int, c_double]),
+    "shapeop_snakeFollowRail": (c_int, [c_void_p, c_int, POINTER(c_double), c_int, c_int, c_int]),
+    "shapeop_snakeGlideRail": (c_int, [c_void_p, c_int, POINTER(c_double), c_int, c_int]),
+    "shapeop_snakeRailCount": (c_int, [c_void_p]),
+    "shapeop_snakeClearRails": (c_int, [c_void_p]),
+    "shapeop_snakeDefaultOptions": (c_int, [POINTER(shapeop_snake_options)]),
+    "shapeop_snakeVelocity": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(shapeop_snake_options),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_double),
+        ],
+    ),
+    "shapeop_snakeProject": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(c_double),
+            c_int,
+            POINTER(shapeop_snake_options),
+            POINTER(shapeop_snake_projection),
+        ],
+    ),
+    "shapeop_snakeEvolve": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(shapeop_snake_options),
+            shapeop_snake_progress_callback,
+            c_void_p,
+            POINTER(shapeop_snake_evolution),
+        ],
+    ),
+    "shapeop_snakeFrameCount": (c_int, [c_void_p]),
+    "shapeop_snakeFrames": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeFrameRows": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeTakeFrame": (c_int, [c_void_p, c_int]),
+    "shapeop_snakeCongruence": (c_int, [c_void_p, c_int, c_int, POINTER(c_double), POINTER(c_double)]),
+    "shapeop_snakeDefaultCycleOptions": (c_int, [POINTER(shapeop_snake_cycle_options)]),
+    "shapeop_snakeCycle": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(shapeop_snake_cycle_options),
+            shapeop_snake_progress_callback,
+            c_void_p,
+            POINTER(shapeop_snake_cycle),
+        ],
+    ),
+    "shapeop_snakeLinkageFreedoms": (c_int, [c_void_p]),
+    "shapeop_snakeDeterminant": (c_int, [c_void_p, POINTER(c_double)]),
+    "shapeop_snakeCycleAngles": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeContactPath": (c_int, [c_void_p, c_int, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeAtPhases": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeCopies": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            c_double,
+            c_double,
+            POINTER(c_double),
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_snakeSweepMesh": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_snakePipe": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            c_double,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_snakeLamellae": (
+        c_int,
+        [
+            c_void_p,
+            c_int,
+            c_int,
+            POINTER(c_double),
+            c_double,
+            c_int,
+            POINTER(c_double),
+            c_int,
+            POINTER(c_int),
+            POINTER(c_int),
+            c_int,
+            POINTER(c_int),
+        ],
+    ),
+    "shapeop_snakeKinds": (c_int, [c_void_p, c_double, POINTER(c_double), c_int, POINTER(c_int)]),
+    "shapeop_snakeKindOf": (c_int, [c_void_p, c_double, POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_snakeCreateFromText": (c_void_p, [c_char_p]),
+    "shapeop_snakeText": (c_char_p, [c_void_p]),
+    "shapeop_snakeArcsText": (c_char_p, [c_void_p, c_int, c_double]),
+    "shapeop_snakeArcsCsv": (c_char_p, [c_void_p, c_int, c_double]),
+    "shapeop_snakeKindsCsv": (c_char_p, [c_void_p, c_int, c_double]),
+    "shapeop_snakeArcsDxf": (c_char_p, [c_void_p, c_int, c_double]),
 }
 
 
