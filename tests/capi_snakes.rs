@@ -1096,7 +1096,6 @@ fn snakes_and_their_arcs_as_texts() {
     assert_eq!(lines(shapeop_snakeArcsCsv(snake.0, 2, 1e-6)), 9);
 }
 
-#[cfg(any())]
 #[test]
 fn a_closed_snake_is_fitted_to_a_closed_polyline() {
     let circle: Vec<f64> = around([1.5, 0.0, 0.3], [0.0, TAU])[..ON_RAIL as usize].concat();

@@ -62,17 +62,17 @@ struct Settings {
     mu: f64,
 }
 
-fn integer() -> impl Strategy<Value = c_int> {
-    prop_oneof![12 => 0..7_i32, 1 => any::<c_int>(), 1 => Just(-1)]
+fn integer() -> BoxedStrategy<c_int> {
+    prop_oneof![12 => 0..7_i32, 1 => any::<c_int>(), 1 => Just(-1)].boxed()
 }
 
 /// Mostly a number that is good for a weight or a length.
-fn positive() -> impl Strategy<Value = f64> {
-    prop_oneof![12 => 0.01..2.0_f64, 1 => number()]
+fn positive() -> BoxedStrategy<f64> {
+    prop_oneof![12 => 0.01..2.0_f64, 1 => number()].boxed()
 }
 
-fn vector() -> impl Strategy<Value = [f64; 3]> {
-    prop_oneof![4 => [-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64], 1 => [number(), number(), number()]]
+fn vector() -> BoxedStrategy<[f64; 3]> {
+    prop_oneof![4 => [-1.0..1.0_f64, -1.0..1.0_f64, -1.0..1.0_f64], 1 => [number(), number(), number()]].boxed()
 }
 
 fn numbers(most: usize) -> impl Strategy<Value = Vec<f64>> {
@@ -83,14 +83,15 @@ fn small(count: usize) -> impl Strategy<Value = Vec<f64>> {
     proptest::collection::vec(-1.0..1.0_f64, count)
 }
 
-fn settings() -> impl Strategy<Value = Settings> {
+fn settings() -> BoxedStrategy<Settings> {
     let weights = [positive(), positive(), positive(), positive()];
     let flags = [0..2_i32, 0..2_i32, 0..2_i32, 0..12_i32];
     (positive(), prop_oneof![Just(-1.0), positive()], weights, flags, positive())
         .prop_map(|(step, deviation, weights, flags, mu)| Settings { step: 0.1 * step, deviation, weights, flags, mu })
+        .boxed()
 }
 
-fn call() -> impl Strategy<Value = Call> {
+fn call() -> BoxedStrategy<Call> {
     let arcs = || proptest::collection::vec(positive(), 0..6);
     let making = prop_oneof![
         1 => (numbers(16), 0..3_i32, number()).prop_map(|(p, c, t)| Call::Create(p, c, t)),
@@ -103,14 +104,15 @@ fn call() -> impl Strategy<Value = Call> {
         1 => (Just([1.0, 0.2, -0.3, 2.0]), vector(), vector(), positive(), positive())
             .prop_map(|(n, s, t, c, l)| Call::Curve(1, n.to_vec(), s, t, vec![c], l)),
         1 => (vector(), vector(), positive(), positive()).prop_map(|(s, t, c, l)| Call::MeshCurve(s, t, c, l)),
-    ];
+    ]
+    .boxed();
     let setting = prop_oneof![
         1 => (number(), numbers(20)).prop_map(|(by, p)| Call::Control(by, p)),
         2 => (0.0..0.1_f64, small(20), 0..3_i32).prop_map(|(by, p, exact)| Call::Project(by, p, exact)),
         1 => (number(), numbers(20), 0..3_i32).prop_map(|(by, p, exact)| Call::Project(by, p, exact)),
         2 => (0..4_i32, small(6)).prop_map(|(kind, n)| Call::Surface(kind, [n, vec![2.0, 0.5]].concat())),
         1 => (integer(), numbers(9)).prop_map(|(kind, n)| Call::Surface(kind, n)),
-        1 => (prop_oneof![small(27), proptest::collection::vec(number(), 27)], integer()).prop_map(|(p, n)| Call::Mesh(p, n)),
+        1 => (prop_oneof![small(27), proptest::collection::vec(number(), 27)], prop_oneof![Just(7), integer()]).prop_map(|(p, n)| Call::Mesh(p, n)),
         1 => Just(Call::NoSurface),
         3 => (0..4_i32, proptest::option::of(vector())).prop_map(|(kind, v)| Call::Direction(kind, v)),
         1 => prop_oneof![small(1), small(8), numbers(9)].prop_map(Call::Speeds),
@@ -120,22 +122,25 @@ fn call() -> impl Strategy<Value = Call> {
         4 => (0..3_u32, integer(), prop_oneof![small(9), numbers(12)], number(), integer())
             .prop_map(|(which, i, p, s, l)| Call::Rail(which, i, p, s, l)),
         1 => Just(Call::NoRails),
-    ];
+    ]
+    .boxed();
     let moving = prop_oneof![
         4 => (settings(), 0..6_u32).prop_map(|(s, n)| Call::Evolve(s, n)),
         2 => settings().prop_map(Call::Velocity),
         2 => (prop_oneof![Just(0.1), number()], 0..12_u32, 0..2_i32).prop_map(|(s, n, r)| Call::Cycle(s, n, r)),
         1 => integer().prop_map(Call::Take),
         1 => Just(Call::Again),
-    ];
+    ]
+    .boxed();
     let telling = prop_oneof![
         6 => (0..13_u32, integer(), integer()).prop_map(|(which, i, j)| Call::Told(which, i, j)),
         3 => (0..5_u32, -1..4_i32, number(), integer(), vector()).prop_map(|(w, f, r, n, v)| Call::Mesher(w, f, r, n % 40, v)),
         1 => (0..4_i32, number(), number(), vector()).prop_map(|(n, p, s, v)| Call::Copies(n, p, s, v)),
         1 => positive().prop_map(Call::Kinds),
         2 => (0..5_u32, -2..4_i32, positive()).prop_map(|(which, f, t)| Call::Texts(which, f, t)),
-    ];
-    prop_oneof![1 => making, 3 => setting, 3 => moving, 2 => telling]
+    ]
+    .boxed();
+    prop_oneof![1 => making, 3 => setting, 3 => moving, 2 => telling].boxed()
 }
 
 fn text_of(text: *const std::ffi::c_char) -> String {

@@ -10,7 +10,7 @@ use super::io::{self, placed};
 use super::snake::ShapeOpSnake;
 use crate::error::{Error, Status};
 use crate::geometry::snakes::draft::Draft;
-use crate::geometry::snakes::fit::{self, fit};
+use crate::geometry::snakes::fit::{self, fit, fit_closed};
 use crate::linalg::gauss_newton::Stop;
 
 /// Arcs of a fitted snake at most.
@@ -85,7 +85,9 @@ pub unsafe extern "C" fn shapeop_snakeDefaultFitOptions(options: *mut shapeop_sn
 }
 
 /// Creates the snake of `nb_arcs` arcs of equal length along a polyline of `nb_points` points, open or, with `is_closed`
-/// 1, closed; null if it is refused. Lengths and curvatures are those of the circles through three points in a row.
+/// 1, closed; null if it is refused. Lengths and curvatures are those of the circles through three points in a row. Arcs
+/// around a closed one are about of equal length and as curved as it is; of the options `is_congruent` and `curvature` do
+/// not count then.
 /// `options` is null for the defaults; `report` is null, or its `struct_size` is set.
 ///
 /// # Safety
@@ -122,7 +124,7 @@ pub unsafe extern "C" fn shapeop_snakeFit(
         };
         let mut quiet = |_: &_| ControlFlow::Continue(());
         let fitted = if is_closed {
-            fit(&points, arc_count, &options, &mut quiet)
+            fit_closed(&points, arc_count, &options, &mut quiet)
         } else {
             fit(&points, arc_count, &options, &mut quiet)
         };

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::arc_list::ArcList;
 use super::covering::{flat_lamellae, lamella};
 use super::cycle::{self, Motion, cycle};
-use super::evolution::{self, Direction, Evolution, Task, evolve};
+use super::evolution::{self, Direction, Evolution, Frame, Stop, Task, evolve};
 use super::freedoms::{Freedoms, freedoms, freedoms_on_surface};
 use super::functionals::{Row, near_plane, near_vector};
 use super::projection::{self, Projected, project};
@@ -347,6 +347,7 @@ impl Draft {
     pub fn project(&mut self, target: &[DVec3], options: &projection::Options) -> Result<Projected> {
         let task = projection::Task { fixed: &self.fixed, ..projection::Task::new(&self.snake, target) };
         let found = project(&task, options)?;
+        check_numbers(&[found.residual, found.moved])?;
         self.snake = found.snake.clone();
         self.track = None;
         Ok(found)
@@ -362,6 +363,13 @@ impl Draft {
         progress: &mut dyn FnMut(&evolution::Progress<'_>) -> ControlFlow<()>,
     ) -> Result<&Evolution> {
         let found = self.with_task(|task| evolve(task, options, progress))?;
+        for frame in &found.frames {
+            let Frame { time, deviation, residual, height_residual, incongruence, velocity_residual, .. } = *frame;
+            check_numbers(&[time, deviation, residual, height_residual, incongruence, velocity_residual])?;
+        }
+        if let Stop::Deviation(by) | Stop::RailEnd { distance: by, .. } = found.stop {
+            check_numbers(&[by])?;
+        }
         match self.track.insert(Track::Evolution(found)) {
             Track::Evolution(found) => Ok(found),
             Track::Cycle(_) => Err(nothing()),
@@ -378,6 +386,7 @@ impl Draft {
         progress: &mut dyn FnMut(&cycle::Progress) -> ControlFlow<()>,
     ) -> Result<&Motion> {
         let found = cycle(&self.linkage()?, options, progress)?;
+        check_numbers(&[found.residual, found.closing.unwrap_or(0.0)])?;
         match self.track.insert(Track::Cycle(found)) {
             Track::Cycle(found) => Ok(found),
             Track::Evolution(_) => Err(nothing()),
@@ -514,6 +523,15 @@ impl Draft {
                 .map(one),
         }
     }
+}
+
+/// Refuses what is found of a snake that is so large that squares of lengths are not finite.
+fn check_numbers(found: &[f64]) -> Result<()> {
+    if found.iter().all(|number| number.is_finite()) {
+        return Ok(());
+    }
+    let reason = "coordinates are so large that the result is not finite";
+    Err(Error::new(Status::InvalidValue, reason).at("snake"))
 }
 
 fn nothing() -> Error {

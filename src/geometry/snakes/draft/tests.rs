@@ -1,10 +1,6 @@
 use super::*;
 use crate::geometry::snakes::{ArcShape, Pose};
 
-fn quiet<P>(_: P) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
-
 /// Three arcs of a circle of radius 2 in the plane z = 0.
 fn flat() -> Draft {
     let pose = Pose { point: DVec3::ZERO, tangent: DVec3::X, normal: DVec3::Y };
@@ -24,7 +20,7 @@ fn what_was_found_is_forgotten_when_the_snake_is_put_elsewhere() {
     assert_eq!(draft.frames().unwrap_err().status(), Status::NotInitialised);
     draft.set_direction(Direction::Sideways).unwrap();
     let options = evolution::Options { max_steps: 4, ..Default::default() };
-    draft.evolve(&options, &mut quiet).unwrap();
+    draft.evolve(&options, &mut |_| ControlFlow::Continue(())).unwrap();
     assert_eq!(draft.frames().unwrap().len(), 5);
     assert!(draft.congruence(0, 4).unwrap().rms < 1e-12 && draft.motion().is_err());
     let last = draft.at(Some(4)).unwrap();
@@ -48,7 +44,7 @@ fn rails_begin_at_their_nearest_points() {
     let driven = Role::Driven { point: 4, speed: 1.0 };
     assert_eq!(draft.add_rail(&line, false, driven).unwrap(), 0);
     let options = evolution::Options { max_steps: 3, step: 0.1, ..Default::default() };
-    let evolution = draft.evolve(&options, &mut quiet).unwrap();
+    let evolution = draft.evolve(&options, &mut |_| ControlFlow::Continue(())).unwrap();
     for frame in &evolution.frames {
         assert!(frame.snake.control()[4].distance(end + frame.time * DVec3::Y) < 1e-12);
     }
@@ -66,9 +62,9 @@ fn rails_begin_at_their_nearest_points() {
     // The snake is no longer on its rail.
     let moved = draft.snake().control().iter().map(|p| *p + DVec3::X).collect();
     draft.set_control(moved).unwrap();
-    assert_eq!(draft.evolve(&options, &mut quiet).unwrap_err().place(), "rails[0]");
+    assert_eq!(draft.evolve(&options, &mut |_| ControlFlow::Continue(())).unwrap_err().place(), "rails[0]");
     draft.clear_rails();
-    draft.evolve(&evolution::Options { max_steps: 0, ..options }, &mut quiet).unwrap();
+    draft.evolve(&evolution::Options { max_steps: 0, ..options }, &mut |_| ControlFlow::Continue(())).unwrap();
 }
 
 #[test]
