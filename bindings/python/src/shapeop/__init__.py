@@ -7,7 +7,7 @@ Recipes make a problem from a mesh and solve it. The library names them (:func:`
 here, such as ``shapeop.planarize(mesh)``.
 """
 
-from . import canal, ruled
+from . import canal, ruled, snakes
 from ._library import (
     LIBRARY_PATH,
     ArgumentError,
@@ -90,6 +90,7 @@ __all__ = [
     "recipe",
     "recipe_names",
     "ruled",
+    "snakes",
     "version",
 ]
 

@@ -80,7 +80,7 @@ class ClosedError(Error, RuntimeError):
 
 
 class NotInitialisedError(Error, RuntimeError):
-    """The solver was not initialised: call ``init()`` or ``init_dynamic()``."""
+    """Another call must come first: a solver's ``init()``, or one that finds what is to be told."""
 
 
 class UnboundedError(Error, RuntimeError):

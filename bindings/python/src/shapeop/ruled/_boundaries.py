@@ -7,9 +7,9 @@ from math import radians
 from typing import Any, Optional, Union
 
 from .. import _abi, _arrays
-from .._calls import CallWatch, doubles, vector
+from .._calls import CallWatch, doubles, set_options, struct, vector
 from .._library import ArgumentError, check, lib
-from ._field import _Fields, set_options, struct
+from ._field import _Fields
 from ._kinds import Axis, Boundary, Dropped, Image, LevelReport, Levels, Progress, ProgressFunction, Stop
 
 

@@ -7,9 +7,8 @@ import os
 from typing import Any, Optional, Union
 
 from .. import _abi, _arrays
-from .._calls import doubles, ints, optional_vector, vector
+from .._calls import doubles, integers, ints, optional_vector, set_options, struct, told_text, vector
 from .._library import ArgumentError, check, lib
-from ._field import integers, set_options, struct, told_text
 from ._kinds import Axis, Plank, Planks, Rulings, StripMesh
 from ._rhino import write
 from ._strips import _Strips

@@ -7,46 +7,9 @@ import weakref
 from typing import Any, Optional
 
 from .. import _abi, _arrays, meshes
-from .._calls import doubles, ints, optional_vector, sized, vector
-from .._library import ClosedError, ErrorCode, check, check_message, lib, refusal, text
+from .._calls import doubles, integers, ints, optional_vector, set_options, sized, struct, vector
+from .._library import ClosedError, ErrorCode, check, check_message, lib, refusal
 from ._kinds import Curvatures, Directions, Field, PointStatus, Trace, TraceEnd
-
-
-def integers(values: Any, *shape: int) -> Any:
-    """Integers that the library filled into a ctypes array, as an array of a shape, or nested lists."""
-    if _arrays.numpy is not None:
-        return _arrays.numpy.array(values[:], dtype=_arrays.numpy.int32).reshape(shape)
-    nested: Any = list(values)
-    for length in reversed(shape[1:]):
-        nested = [nested[i : i + length] for i in range(0, len(nested), length)]
-    return nested
-
-
-def struct(kind: Any) -> Any:
-    """A struct of the library with its size."""
-    return kind(struct_size=ctypes.sizeof(kind))
-
-
-def set_options(options: Any, given: dict[str, Any]) -> Any:
-    """Sets the fields of a struct whose values are given, by their kind: a truth, an integer or a number."""
-    kinds = dict(options._fields_)
-    for name, value in given.items():
-        if value is None:
-            continue
-        if isinstance(value, bool):
-            setattr(options, name, int(value))
-        elif kinds[name] is ctypes.c_double:
-            setattr(options, name, _arrays.real(value, name))
-        else:
-            setattr(options, name, _arrays.integer(value, name))
-    return options
-
-
-def told_text(value: Optional[bytes]) -> str:
-    """A text, which the library refuses by none."""
-    if value is None:
-        check_message()
-    return text(value)
 
 
 class _Fields:

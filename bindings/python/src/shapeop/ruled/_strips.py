@@ -6,10 +6,9 @@ import ctypes
 from typing import Any, Optional, Union
 
 from .. import _abi, _arrays
-from .._calls import doubles, optional_vector, sized
+from .._calls import doubles, optional_vector, set_options, sized, struct, told_text
 from .._library import ArgumentError, check, lib
 from ._boundaries import _Boundaries, _plane, watch
-from ._field import set_options, struct, told_text
 from ._kinds import (
     End,
     Evaluated,
