@@ -967,6 +967,55 @@ fn a_circle_that_moves_along_its_axis_sweeps_a_cylinder() {
 }
 
 #[test]
+fn a_covering_is_judged() {
+    // An arc that moves up sweeps a wall; the mesh is one twice as high, beside it.
+    let snake = flat();
+    let along = shapeop_snake_direction::SO_SNAKE_DIRECTION_ALONG as c_int;
+    let mut told = sized!(shapeop_snake_covering);
+    let mut own = defaults!(shapeop_snake_covering_options, shapeop_snakeDefaultCoveringOptions);
+    let handle = snake.0;
+    // SAFETY: live arrays of the stated lengths, live structs.
+    unsafe {
+        refused(shapeop_snakeCovering(handle, &own, &mut told), SO_NOT_INITIALISED, "snake");
+        assert!(shapeop_snakeCoveringText(handle, &own).is_null());
+        assert_eq!(shapeop_snakeSetDirection(handle, along, Z.as_ptr()), SO_SUCCESS);
+        evolve(&snake, &shapeop_snake_options { max_steps: 4, step: 0.25, ..options() });
+        assert_eq!(shapeop_snakeCovering(handle, ptr::null(), &mut told), SO_SUCCESS, "{}", message());
+        assert_eq!((told.position_count, told.arc_count, told.kind_count, told.is_compared), (5, 25, 1, 0));
+        assert!((told.length - 12.5).abs() < 1e-9 && (told.area - 2.5).abs() < 1e-2 && told.residual < 1e-12);
+        // The wall of the arcs' cylinder, out by 0.01, twice as high.
+        let at = |k: c_int| 1.25 * f64::from(k % 41) / 40.0;
+        let wall: Vec<f64> =
+            (0..41 * 2).flat_map(|k| [2.01 * at(k).sin(), 2.0 - 2.01 * at(k).cos(), 2.0 * f64::from(k / 41)]).collect();
+        let quads: Vec<c_int> = (0..40).flat_map(|k| [k, k + 1, k + 42, k + 41]).collect();
+        assert_eq!(shapeop_snakeSetMesh(handle, wall.as_ptr(), 82, quads.as_ptr(), 160, &4, 1), SO_SUCCESS);
+        (own.distance, own.per_arc) = (0.05, 20);
+        assert_eq!(shapeop_snakeCovering(handle, &own, &mut told), SO_SUCCESS, "{}", message());
+        assert_eq!((told.is_compared, told.distance), (1, 0.05));
+        assert!(
+            (told.largest_deviation - 0.01).abs() < 1e-3 && told.rms_deviation <= told.largest_deviation,
+            "{told:?}"
+        );
+        assert!((told.coverage - 0.52).abs() < 0.03 && (told.reference_area - 5.025).abs() < 0.01, "{told:?}");
+        assert!(text(shapeop_snakeCoveringText(handle, &own)).contains("\"coverage\""));
+        type Change = fn(&mut shapeop_snake_covering_options);
+        let changes: [(&str, Change); 5] = [
+            ("options->distance", |options| options.distance = -1.0),
+            ("options->distance", |options| options.distance = f64::NAN),
+            ("options->tolerance", |options| options.tolerance = -1.0),
+            ("options->per_arc", |options| options.per_arc = 0),
+            ("options->comes_back", |options| options.comes_back = 2),
+        ];
+        for (place, change) in changes {
+            let mut own = own;
+            change(&mut own);
+            refused(shapeop_snakeCovering(handle, &own, &mut told), SO_INVALID_VALUE, place);
+        }
+        refused(shapeop_snakeCovering(handle, &own, ptr::null_mut()), SO_NULL_POINTER, "report");
+    }
+}
+
+#[test]
 fn a_linkage_moves_around() {
     let snake = six_arcs();
     assert_eq!(shapeop_snakeLinkageFreedoms(snake.0), 1);

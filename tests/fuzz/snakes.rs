@@ -48,6 +48,7 @@ enum Call {
     Mesher(u32, c_int, f64, c_int, [f64; 3]),
     Copies(c_int, f64, f64, [f64; 3]),
     Kinds(f64),
+    Covering(f64, c_uint),
     Texts(u32, c_int, f64),
     Again,
 }
@@ -137,6 +138,7 @@ fn call() -> BoxedStrategy<Call> {
         3 => (0..5_u32, -1..4_i32, number(), integer(), vector()).prop_map(|(w, f, r, n, v)| Call::Mesher(w, f, r, n % 40, v)),
         1 => (0..4_i32, number(), number(), vector()).prop_map(|(n, p, s, v)| Call::Copies(n, p, s, v)),
         1 => positive().prop_map(Call::Kinds),
+        1 => (positive(), any::<u32>()).prop_map(|(d, n)| Call::Covering(d, n)),
         2 => (0..5_u32, -2..4_i32, positive()).prop_map(|(which, f, t)| Call::Texts(which, f, t)),
     ]
     .boxed();
@@ -372,6 +374,17 @@ fn make(snake: *mut ShapeOpSnake, call: &Call) -> (bool, Vec<f64>) {
                 let offset = offset.as_ptr();
                 shapeop_snakeCopies(snake, *copies, *phase, *shift, offset, out, 1000, &mut count) == SO_SUCCESS
             }
+            Call::Covering(distance, n) => {
+                let mut options: shapeop_snake_covering_options = std::mem::zeroed();
+                options.struct_size = size_of_val(&options) as c_uint;
+                shapeop_snakeDefaultCoveringOptions(&mut options);
+                (options.distance, options.per_arc, options.comes_back) = (*distance, *n % 9, (*n % 2) as c_int);
+                let mut report: shapeop_snake_covering = std::mem::zeroed();
+                report.struct_size = size_of_val(&report) as c_uint;
+                let code = shapeop_snakeCovering(snake, &options, &mut report);
+                room[..3].copy_from_slice(&[report.area, report.coverage, report.largest_deviation]);
+                code == SO_SUCCESS
+            }
             Call::Kinds(tolerance) => {
                 let of = shapeop_snakeKindOf(snake, *tolerance, to, 1000, &mut other);
                 shapeop_snakeKinds(snake, *tolerance, out, 1000, &mut count) == SO_SUCCESS && of == SO_SUCCESS
@@ -479,6 +492,6 @@ fn no_sequence_of_calls_on_snakes_crashes() {
     TestRunner::new_with_rng(config, rng).run(&sequences, run).unwrap();
     // A call that is always refused tests nothing; a text at random is no snake.
     let done = done.into_inner();
-    assert!(done.len() == 28 && done.iter().all(|(kind, count)| *count > 0 || kind == "Text"), "{done:?}");
+    assert!(done.len() == 29 && done.iter().all(|(kind, count)| *count > 0 || kind == "Text"), "{done:?}");
     println!("{done:?}");
 }

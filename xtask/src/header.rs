@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use crate::{declarations, shell};
 
 /// The sources of the C ABI, in the order in which the header groups functions.
-const SOURCES: [&str; 43] = [
+const SOURCES: [&str; 44] = [
     "errors",
     "handles",
     "solver",
@@ -51,6 +51,7 @@ const SOURCES: [&str; 43] = [
     "snakes/cycle",
     "snakes/linkage",
     "snakes/sweep",
+    "snakes/covering",
     "snakes/texts",
 ];
 

@@ -1,5 +1,6 @@
 //! Circular arc snakes: what `crate::geometry::snakes` can do, for C.
 
+mod covering;
 mod curve;
 mod cycle;
 mod evolve;
@@ -14,6 +15,7 @@ mod sweep;
 mod texts;
 mod wishes;
 
+pub use covering::*;
 pub use curve::*;
 pub use cycle::*;
 pub use evolve::*;

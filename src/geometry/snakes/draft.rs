@@ -12,6 +12,7 @@ use super::freedoms::{Freedoms, freedoms, freedoms_on_surface};
 use super::functionals::{Row, near_plane, near_vector};
 use super::projection::{self, Projected, project};
 use super::rails::{self, Rail};
+use super::report::{self, Reference, Report, ReportOptions};
 use super::sweep::swept_grid;
 use super::velocity::Admissible;
 use super::{Congruence, Linkage, Snake, congruence};
@@ -19,6 +20,8 @@ use crate::error::{Error, Result, Status, finite};
 use crate::mesh::ReferenceSurface;
 use crate::mesh::curve::{NearestOnCurve, Spline};
 use crate::mesh::grid::{Grid, check_finite};
+use crate::mesh::reference::ReferenceMesh;
+use crate::problem::json;
 
 mod surface;
 
@@ -505,6 +508,26 @@ impl Draft {
     /// As [`Draft::frames`] and [`ArcList::new`].
     pub fn arc_list(&self, tolerance: f64) -> Result<ArcList> {
         ArcList::new(&self.snake, &self.frames()?, &self.times()?, tolerance)
+    }
+
+    /// What the positions found come to, compared with the snake's surface where that is a mesh.
+    ///
+    /// # Errors
+    /// As [`Draft::frames`] and [`report`](report::report).
+    pub fn report(&self, options: &ReportOptions) -> Result<Report> {
+        let frames = self.frames()?;
+        match &self.surface {
+            Some(Surface::Mesh(mesh)) => {
+                let surface = ReferenceMesh::new(mesh);
+                report::report(&self.snake, &frames, Some(Reference { mesh, surface: &surface }), options)
+            }
+            _ => report::report(&self.snake, &frames, None, options),
+        }
+    }
+
+    /// The JSON form of a report.
+    pub fn report_json(report: &Report) -> String {
+        json::to_text(report)
     }
 
     /// Lamellae of a depth along the snake at a position found, or as it is.
