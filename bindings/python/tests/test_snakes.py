@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from math import atan2, cos, dist, hypot, pi, sin, tan
-from typing import Any, Callable
+from typing import Any, Callable, cast
 
 import pytest
 
@@ -75,7 +75,9 @@ def test_closed_snakes_and_texts() -> None:
     eight = snakes.Snake(ring(8), closed=True, first_tangent=tan(pi / 8))
     again = snakes.Snake.from_json(eight.to_json())
     assert rows_of(again.control) == rows_of(eight.control)
-    assert again.kinds() == [snakes.ArcKind(pytest.approx(1.0), pytest.approx(pi / 4), 8)]
+    (kind,) = again.kinds()
+    assert (kind.radius, kind.length) == pytest.approx((1.0, pi / 4))
+    assert kind.count == 8
     assert again.kind_of() == [0] * 8
     assert len(again.arcs_csv().splitlines()) == 9
     assert again.to_dxf().split().count("ARC") == 8
@@ -262,6 +264,28 @@ def test_meshes() -> None:
     assert max(dist(p, q) for p, q in zip(a, b)) < 1e-9
 
 
+def test_a_covering_is_judged() -> None:
+    at = [1.25 * k / 40 for k in range(41)]
+    wall = [[2.01 * sin(a), 2 - 2.01 * cos(a), z] for z in (0.0, 2.0) for a in at]
+    faces = [[k, k + 1, k + 42, k + 41] for k in range(40)]
+    evolution = snakes.evolve(flat(), direction=Z, step=0.25, max_steps=4)
+    alone = evolution.covering()
+    assert not alone.is_compared
+    assert (alone.position_count, alone.arc_count, alone.kind_count) == (5, 25, 1)
+    assert alone.length == pytest.approx(12.5)
+    assert alone.area == pytest.approx(2.5, abs=1e-2)
+    # The heights over the wall are kept, and so it moves along it.
+    evolution = snakes.evolve(flat(), (wall, faces), direction=Z, step=0.25, max_steps=4)
+    found = evolution.covering(distance=0.05, per_arc=20)
+    assert found.is_compared
+    assert found.coverage == pytest.approx(0.52, abs=0.03)
+    assert found.reference_area == pytest.approx(5.025, abs=0.01)
+    assert found.largest_deviation < 0.015
+    assert json.loads(found.json)["reference"]["distance"] == 0.05
+    with pytest.raises(shapeop.InvalidValueError, match="options->distance"):
+        evolution.covering(distance=-1)
+
+
 def test_a_linkage_moves_around() -> None:
     linkage = snakes.Linkage(six_arcs())
     assert linkage.freedoms == 1
@@ -308,7 +332,7 @@ def test_a_linkage_moves_around() -> None:
     [
         (lambda: snakes.Snake([[0, 0, 0], [1, 0, 0]]), shapeop.InvalidValueError, "control"),
         (lambda: snakes.Snake("control"), shapeop.ArgumentTypeError, "control"),
-        (lambda: snakes.Snake(ring(7), closed=1), shapeop.ArgumentTypeError, "closed"),
+        (lambda: snakes.Snake(ring(7), closed=cast("Any", 1)), shapeop.ArgumentTypeError, "closed"),
         (lambda: snakes.Snake(ring(8), True, float("nan")), shapeop.InvalidValueError, "first_tangent"),
         (lambda: snakes.Snake.from_arcs([1.0], [1.0, 1.0]), shapeop.ArgumentError, "lengths"),
         (lambda: snakes.Snake.from_arcs([-1.0], [1.0]), shapeop.InvalidValueError, r"radii\[0\]"),
@@ -319,11 +343,11 @@ def test_a_linkage_moves_around() -> None:
         (lambda: snakes.evolve(flat(), direction="sideways"), shapeop.InvalidValueError, "direction"),
         (lambda: snakes.evolve(flat(), direction="up"), shapeop.ArgumentError, "direction"),
         (lambda: snakes.evolve(flat(), step=0), shapeop.InvalidValueError, "options->step"),
-        (lambda: snakes.evolve(flat(), step="1"), shapeop.ArgumentTypeError, "step"),
+        (lambda: snakes.evolve(flat(), step=cast("Any", "1")), shapeop.ArgumentTypeError, "step"),
         (lambda: snakes.evolve(flat(), max_deviation=-1), shapeop.ArgumentError, "max_deviation"),
         (lambda: snakes.evolve(flat(), speeds=[1.0, 2.0]), shapeop.InvalidValueError, "nb_speeds"),
         (lambda: snakes.evolve(flat(), fixed=[7]), shapeop.IndexRangeError, r"points\[0\]"),
-        (lambda: snakes.evolve(flat(), second_order=2), shapeop.ArgumentTypeError, "second_order"),
+        (lambda: snakes.evolve(flat(), second_order=cast("Any", 2)), shapeop.ArgumentTypeError, "second_order"),
         (lambda: snakes.fit(ring(7), 0), shapeop.InvalidValueError, "nb_arcs"),
         (lambda: snakes.fit(ring(7), 3, nearness=0), shapeop.InvalidValueError, "options->nearness"),
         (lambda: snakes.curve(snakes.sphere([0, 0, 0], 1), [1, 0, 0], Z, 2, 1, turns="up"), ValueError, "turns"),

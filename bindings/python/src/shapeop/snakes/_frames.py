@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any
+from typing import Any, Optional
 
-from .. import _arrays
-from .._calls import doubles
+from .. import _abi, _arrays
+from .._calls import doubles, set_options, struct, told_text
 from .._library import ArgumentError, check, lib
 from ._handle import ALL, Handle, mesh_of
-from ._kinds import Arc, Congruence, Mesh
+from ._kinds import Arc, Congruence, Covering, Mesh
 from ._snake import Snake
 
 
@@ -69,6 +69,33 @@ class Frames(Handle):
         pair = (self._frame(a), self._frame(b))
         check(lib.shapeop_snakeCongruence(self._handle, *pair, ctypes.byref(rms), ctypes.byref(distances)))
         return Congruence(rms.value, distances.value)
+
+    def covering(
+        self,
+        *,
+        distance: Optional[float] = None,
+        per_arc: int = 8,
+        comes_back: bool = False,
+        tolerance: float = 1e-6,
+    ) -> Covering:
+        """Judges the surface that the positions sweep, and how it covers the mesh that the snake moved on.
+
+        A spot of the mesh is covered if the swept surface is within ``distance``, by default 0.01 of its diagonal.
+        """
+        options = struct(_abi.shapeop_snake_covering_options)
+        check(lib.shapeop_snakeDefaultCoveringOptions(ctypes.byref(options)))
+        back = _arrays.truth(comes_back, "comes_back")
+        given = {"distance": distance, "per_arc": per_arc, "comes_back": back, "tolerance": tolerance}
+        set_options(options, given)
+        told = struct(_abi.shapeop_snake_covering)
+        check(lib.shapeop_snakeCovering(self._handle, ctypes.byref(options), ctypes.byref(told)))
+        json = told_text(lib.shapeop_snakeCoveringText(self._handle, ctypes.byref(options)))
+        names = [
+            name for name, _ in told._fields_ if name not in ("struct_size", "is_compared", "at_x", "at_y", "at_z")
+        ]
+        numbers = {name: getattr(told, name) for name in names}
+        at = (told.at_x, told.at_y, told.at_z)
+        return Covering(is_compared=bool(told.is_compared), at=at, json=json, **numbers)
 
     def to_json(self, tolerance: float = 1e-6) -> str:
         """All positions and their arcs as JSON; arcs within ``tolerance`` are of one kind."""

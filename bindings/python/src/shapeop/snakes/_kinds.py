@@ -159,12 +159,40 @@ class Arc(NamedTuple):
     angle: float
 
 
-class ArcKind(NamedTuple):
+@dataclass(frozen=True)
+class ArcKind:
     """Arcs to be made that are alike, and how many of them one position has."""
 
     radius: float
     length: float
     count: int
+
+
+@dataclass(frozen=True)
+class Covering:
+    """What the positions of a snake come to.
+
+    Of a surface that is no mesh, ``is_compared`` is ``False`` and what follows it is 0. ``coverage``: the part of the
+    mesh that the swept surface is within ``distance`` of; ``largest_deviation``, at ``at``, of the swept surface from
+    the mesh; ``beyond_count``: samples beyond the boundary of the mesh, which do not count.
+    """
+
+    position_count: int
+    arc_count: int
+    kind_count: int
+    length: float
+    area: float
+    residual: float
+    is_compared: bool
+    reference_area: float
+    coverage: float
+    distance: float
+    largest_deviation: float
+    at: tuple[float, float, float]
+    rms_deviation: float
+    beyond_count: int
+    json: str
+    """The JSON form, with the kinds of arcs."""
 
 
 class Freedoms(NamedTuple):

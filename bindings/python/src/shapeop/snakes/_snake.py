@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 from .. import _abi, _arrays
 from .._calls import doubles, set_options, struct, told_text, vector
-from .._library import check, lib
+from .._library import ArgumentError, check, lib
 from ._handle import NOW, Handle
 from ._kinds import Arc, Freedoms, Mesh, Projection, points_of
 
@@ -16,8 +16,8 @@ class Snake(Handle):
     """A smooth chain of circular arcs.
 
     ``control``: its control points, (n, 3). Of an open snake these are its first point, the vertices of its arcs and
-    its last point; of a closed one the vertices. Around a closed snake of an even number of arcs there are many, of which
-    ``first_tangent`` chooses: the distance from the first control point to both ends of its arc.
+    its last point; of a closed one the vertices. Around a closed snake of an even number of arcs there are many, of
+    which ``first_tangent`` chooses: the distance from the first control point to both ends of its arc.
 
     >>> from math import cos, pi, sin
     >>> ring = [[cos(2 * pi * k / 7), sin(2 * pi * k / 7), 0.0] for k in range(7)]
@@ -54,7 +54,7 @@ class Snake(Handle):
         """
         a, b = _arrays.numbers(radii, "radii"), _arrays.numbers(lengths, "lengths")
         if a.length != b.length:
-            raise _arrays.ArgumentError(f"lengths: expected {a.length}, as many as radii, found {b.length}")
+            raise ArgumentError(f"lengths: expected {a.length}, as many as radii, found {b.length}")
         turns = _arrays.numbers(torsions, "torsions")
         pose = (vector(point, "point"), vector(tangent, "tangent"), vector(normal, "normal"))
         return cls._of(lib.shapeop_snakeCreateFromArcs(a.pointer, b.pointer, a.length, *turns, *pose))
