@@ -2598,6 +2598,113 @@ typedef struct shapeop_snake_cycle {
     double residual;
 } shapeop_snake_cycle;
 
+/**
+ * How a covering is judged. Start from `shapeop_snakeDefaultCoveringOptions`.
+ */
+typedef struct shapeop_snake_covering_options {
+    /**
+     * In: `sizeof(shapeop_snake_covering_options)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Intervals of each arc of the swept surface, 1 to 65 536. Default 8.
+     */
+    unsigned int per_arc;
+    /**
+     * 1: the last position is followed by the first. Default 0.
+     */
+    int comes_back;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * Arcs are of one kind if radii and lengths are both within this of the first's, relative to its, 0 or more. Default
+     * 1e-6.
+     */
+    double tolerance;
+    /**
+     * A spot of the mesh is covered if the swept surface is within this distance, in model units; 0: 0.01 of the mesh's
+     * diagonal. Default 0.
+     */
+    double distance;
+} shapeop_snake_covering_options;
+
+/**
+ * What a covering comes to.
+ */
+typedef struct shapeop_snake_covering {
+    /**
+     * In: `sizeof(shapeop_snake_covering)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Positions of the snake.
+     */
+    unsigned int position_count;
+    /**
+     * Arcs of all positions.
+     */
+    unsigned int arc_count;
+    /**
+     * Kinds of arcs.
+     */
+    unsigned int kind_count;
+    /**
+     * 1 if there is a mesh to compare with, and positions enough to sweep a surface; else what follows `residual` is 0.
+     */
+    int is_compared;
+    /**
+     * Samples of the swept surface that are beyond the boundary of the mesh.
+     */
+    unsigned int beyond_count;
+    /**
+     * The length of all arcs together, in model units.
+     */
+    double length;
+    /**
+     * The area of the swept surface; 0 with one position.
+     */
+    double area;
+    /**
+     * By how much a distance of control points is off in any position at most, in model units.
+     */
+    double residual;
+    /**
+     * The area of the mesh.
+     */
+    double reference_area;
+    /**
+     * The part of the mesh that the swept surface is near to, 0 to 1.
+     */
+    double coverage;
+    /**
+     * How near, in model units.
+     */
+    double distance;
+    /**
+     * The largest distance of a sample of the swept surface from the mesh, in model units; what is beyond its boundary
+     * does not count.
+     */
+    double largest_deviation;
+    /**
+     * The sample that has it, x.
+     */
+    double at_x;
+    /**
+     * See `at_x`.
+     */
+    double at_y;
+    /**
+     * See `at_x`.
+     */
+    double at_z;
+    /**
+     * The root mean square of it over the area.
+     */
+    double rms_deviation;
+} shapeop_snake_covering;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -5743,7 +5850,9 @@ SHAPEOP_API enum shapeop_err shapeop_snakeDefaultFitOptions(struct shapeop_snake
 
 /**
  * Creates the snake of `nb_arcs` arcs of equal length along a polyline of `nb_points` points, open or, with `is_closed`
- * 1, closed; null if it is refused. Lengths and curvatures are those of the circles through three points in a row.
+ * 1, closed; null if it is refused. Lengths and curvatures are those of the circles through three points in a row. Arcs
+ * around a closed one are about of equal length and as curved as it is; of the options `is_congruent` and `curvature` do
+ * not count then.
  * `options` is null for the defaults; `report` is null, or its `struct_size` is set.
  *
  * # Safety
@@ -6273,6 +6382,38 @@ enum shapeop_err shapeop_snakeKindOf(struct ShapeOpSnake *snake,
                                      int *kind_of,
                                      int capacity,
                                      int *count);
+
+/**
+ * Writes the default options to `options`, whose `struct_size` must be set.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API enum shapeop_err shapeop_snakeDefaultCoveringOptions(struct shapeop_snake_covering_options *options);
+
+/**
+ * Judges the surface that the positions found last sweep, and how it covers the mesh that is the snake's surface: writes
+ * to `report`, whose `struct_size` must be set. `options` is null for the defaults.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is readable for so many bytes; `report` is null, or its
+ * `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_snakeCovering(struct ShapeOpSnake *snake,
+                                       const struct shapeop_snake_covering_options *options,
+                                       struct shapeop_snake_covering *report);
+
+/**
+ * The same as JSON (`docs/snake-report.schema.json`), with the kinds of arcs; null if it is refused. The text is valid as
+ * long as that of `shapeop_snakeText`.
+ *
+ * # Safety
+ * `options` is null, or its `struct_size` is set and it is readable for so many bytes.
+ */
+SHAPEOP_API
+const char *shapeop_snakeCoveringText(struct ShapeOpSnake *snake,
+                                      const struct shapeop_snake_covering_options *options);
 
 /**
  * Creates a snake from its JSON form (`docs/snake.schema.json`); null if it is refused.

@@ -958,6 +958,39 @@ namespace ShapeOp
             internal double residual;
         }
 
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_covering_options
+        {
+            internal uint struct_size;
+            internal uint per_arc;
+            internal int comes_back;
+            internal uint reserved;
+            internal double tolerance;
+            internal double distance;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_snake_covering
+        {
+            internal uint struct_size;
+            internal uint position_count;
+            internal uint arc_count;
+            internal uint kind_count;
+            internal int is_compared;
+            internal uint beyond_count;
+            internal double length;
+            internal double area;
+            internal double residual;
+            internal double reference_area;
+            internal double coverage;
+            internal double distance;
+            internal double largest_deviation;
+            internal double at_x;
+            internal double at_y;
+            internal double at_z;
+            internal double rms_deviation;
+        }
+
         [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
         internal delegate int shapeop_progress_callback(ref shapeop_progress progress, IntPtr user);
 
@@ -2896,6 +2929,20 @@ namespace ShapeOp
             int[] kindOf,
             int capacity,
             int[] count);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeDefaultCoveringOptions(ref shapeop_snake_covering_options options);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_snakeCovering(
+            SnakeHandle snake,
+            ref shapeop_snake_covering_options options,
+            ref shapeop_snake_covering report);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_snakeCoveringText(
+            SnakeHandle snake,
+            ref shapeop_snake_covering_options options);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern SnakeHandle shapeop_snakeCreateFromText(byte[] json);

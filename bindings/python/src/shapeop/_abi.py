@@ -752,6 +752,39 @@ class shapeop_snake_cycle(ctypes.Structure):
     ]
 
 
+class shapeop_snake_covering_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("per_arc", c_uint),
+        ("comes_back", c_int),
+        ("reserved", c_uint),
+        ("tolerance", c_double),
+        ("distance", c_double),
+    ]
+
+
+class shapeop_snake_covering(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("position_count", c_uint),
+        ("arc_count", c_uint),
+        ("kind_count", c_uint),
+        ("is_compared", c_int),
+        ("beyond_count", c_uint),
+        ("length", c_double),
+        ("area", c_double),
+        ("residual", c_double),
+        ("reference_area", c_double),
+        ("coverage", c_double),
+        ("distance", c_double),
+        ("largest_deviation", c_double),
+        ("at_x", c_double),
+        ("at_y", c_double),
+        ("at_z", c_double),
+        ("rms_deviation", c_double),
+    ]
+
+
 shapeop_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_progress), c_void_p)
 shapeop_canal_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_canal_progress), c_void_p)
 shapeop_ruled_progress_callback = CFUNCTYPE(c_int, POINTER(shapeop_ruled_progress), c_void_p)
@@ -2109,6 +2142,16 @@ FUNCTIONS = {
     ),
     "shapeop_snakeKinds": (c_int, [c_void_p, c_double, POINTER(c_double), c_int, POINTER(c_int)]),
     "shapeop_snakeKindOf": (c_int, [c_void_p, c_double, POINTER(c_int), c_int, POINTER(c_int)]),
+    "shapeop_snakeDefaultCoveringOptions": (c_int, [POINTER(shapeop_snake_covering_options)]),
+    "shapeop_snakeCovering": (
+        c_int,
+        [
+            c_void_p,
+            POINTER(shapeop_snake_covering_options),
+            POINTER(shapeop_snake_covering),
+        ],
+    ),
+    "shapeop_snakeCoveringText": (c_char_p, [c_void_p, POINTER(shapeop_snake_covering_options)]),
     "shapeop_snakeCreateFromText": (c_void_p, [c_char_p]),
     "shapeop_snakeText": (c_char_p, [c_void_p]),
     "shapeop_snakeArcsText": (c_char_p, [c_void_p, c_int, c_double]),
