@@ -58,6 +58,9 @@ def test_every_type_can_be_added_by_what_the_registry_says_of_it() -> None:
         (shapeop.ruled.Levels, "SO_RULED_LEVELS_"),
         (shapeop.ruled.Image, "SO_RULED_IMAGE_"),
         (shapeop.ruled.Stop, "SO_RULED_STOP_"),
+        (shapeop.snakes.Stop, "SO_SNAKE_STOP_"),
+        (shapeop.snakes.CurveEnd, "SO_SNAKE_CURVE_"),
+        (shapeop.snakes.CycleEnd, "SO_SNAKE_CYCLE_"),
     ],
 )
 def test_no_member_of_an_enum_is_missing(kind: type[IntEnum], prefix: str) -> None:
@@ -67,7 +70,7 @@ def test_no_member_of_an_enum_is_missing(kind: type[IntEnum], prefix: str) -> No
 
 def test_no_error_code_is_missing() -> None:
     solvers = ("SO_OUTCOME_", "SO_ACCELERATION_", "SO_LINEAR_SOLVER_", "SO_PROJECTION_", "SO_FAIRNESS_", "SO_SUCCESS")
-    enums = (*solvers, "SO_CANAL_", "SO_RULED_")
+    enums = (*solvers, "SO_CANAL_", "SO_RULED_", "SO_SNAKE_")
     names = [name for name in vars(_abi) if name.startswith("SO_") and not name.startswith(enums)]
     assert {code.name for code in shapeop.ErrorCode} == {name[len("SO_") :] for name in names}
     for code in shapeop.ErrorCode:

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from math import atan2, cos, dist, hypot, pi, sin, tan
+from pathlib import Path
 from typing import Any, Callable, cast
 
 import pytest
@@ -357,3 +360,13 @@ def test_a_linkage_moves_around() -> None:
 def test_mistakes_name_the_argument(mistake: Callable[[], object], expected: type[Exception], place: str) -> None:
     with pytest.raises(expected, match=place):
         mistake()
+
+
+def test_the_example_runs(tmp_path: Path) -> None:
+    example = Path(__file__).resolve().parents[1] / "examples" / "circular_arc_snakes.py"
+    command = [sys.executable, str(example), str(tmp_path)]
+    told = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert told.returncode == 0, told.stderr
+    assert "126 arcs of radius" in told.stdout
+    assert "CLOSED" in told.stdout
+    assert len((tmp_path / "arcs.csv").read_text(encoding="utf-8").splitlines()) == 127

@@ -31,7 +31,8 @@ pub unsafe extern "C" fn shapeop_snakeSweepMesh(
     quad_count: *mut c_int,
 ) -> shapeop_err {
     code(guard(snake, |draft| {
-        let grid = draft.swept(io::per_arc(per_arc)?, io::truth("comes_back", comes_back)?)?;
+        let swept = draft.swept(io::per_arc(per_arc)?, io::truth("comes_back", comes_back)?);
+        let grid = swept.map_err(|error| io::placed(error, &[("frames", "snake"), ("points", "per_arc")]))?;
         // SAFETY: the caller vouches for the outputs.
         unsafe { tell_grids(&[grid], &Told { points, capacity, count, quads, quad_capacity, quad_count }) }
     }))

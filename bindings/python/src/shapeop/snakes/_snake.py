@@ -22,7 +22,7 @@ class Snake(Handle):
     >>> from math import cos, pi, sin
     >>> ring = [[cos(2 * pi * k / 7), sin(2 * pi * k / 7), 0.0] for k in range(7)]
     >>> snake = Snake(ring, closed=True)
-    >>> len(snake.arcs), round(snake.radii[0], 6) == round(cos(pi / 7), 6)
+    >>> len(snake.arcs), round(snake.length / cos(pi / 7), 6) == round(2 * pi, 6)
     (7, True)
     """
 
