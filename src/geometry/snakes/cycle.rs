@@ -157,7 +157,7 @@ impl Motion {
     fn between(&self, from: usize, to: usize, t: f64) -> Result<Vec<DVec3>> {
         let mut control: Vec<DVec3> =
             self.frames[from].iter().zip(&self.frames[to]).map(|(a, b)| a.lerp(*b, t)).collect();
-        self.linkage.polish(&mut control, None)?;
+        self.linkage.polish(&mut control, &[]);
         Ok(control)
     }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::Linkage;
 use super::cycle::{End, Motion, Options, Progress};
-use super::polish::Level;
+use super::functionals::Row;
 use crate::error::{Error, Result, Status};
 
 /// The drive changes to the other end where that is faster by this part.
@@ -158,7 +158,7 @@ impl<'a> Run<'a> {
         for _ in 0..HALVINGS {
             let along: Vec<DVec3> = self.at().iter().zip(&self.velocity).map(|(p, v)| *p + time * *v).collect();
             let mut next = along.clone();
-            let residual = self.linkage.polish(&mut next, None)?;
+            let residual = self.linkage.polish(&mut next, &[]);
             let length = apart(&along, self.at());
             let turned = turned(self.at(), &next).iter().fold(0.0_f64, |most, angle| most.max(angle.abs()));
             let is_short = apart(&along, &next) <= TAKEN_BACK * length && turned <= MOST_TURNED * step_rad;
@@ -183,8 +183,9 @@ impl<'a> Run<'a> {
         }
         let t = before / (before - after);
         let mut crossing: Vec<DVec3> = self.at().iter().zip(next).map(|(a, b)| a.lerp(*b, t)).collect();
-        let level = Level { normals: self.first_velocity.clone(), value: dot(start, &self.first_velocity) };
-        let residual = self.linkage.polish(&mut crossing, Some(&level))?;
+        let terms = (0..).zip(self.first_velocity.iter().copied()).collect();
+        let level = Row { terms, right: dot(start, &self.first_velocity), weight: 1.0 };
+        let residual = self.linkage.polish(&mut crossing, &[level]);
         let gap = crossing.iter().zip(start).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         let is_back = residual <= OFF * self.size && gap <= CLOSED * self.size;
         self.closing = is_back.then_some(gap);
