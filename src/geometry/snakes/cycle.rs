@@ -100,7 +100,7 @@ pub fn cycle(
     check(options)?;
     let velocity = first_velocity(linkage, options.is_reversed)?;
     let mut run = Run::new(linkage, velocity);
-    let end = run.run(options, progress)?;
+    let end = run.run(options, progress);
     Ok(run.motion(end))
 }
 
@@ -121,7 +121,7 @@ impl Motion {
     /// # Errors
     /// None but of control points that are not finite, which frames do not have.
     pub fn ranges_rad(&self) -> Result<[f64; 2]> {
-        let extreme = |k: usize, sign: f64| -> Result<f64> {
+        let extreme = |k: usize, sign: f64| {
             let value = |i: usize| sign * self.angles_rad[i][k];
             let best = (0..self.frames.len()).fold(0, |best, i| if value(i) > value(best) { i } else { best });
             let (count, is_closed) = (self.frames.len(), self.end == End::Closed);
@@ -131,14 +131,11 @@ impl Motion {
                 if !is_closed && other.abs_diff(best) != 1 {
                     continue;
                 }
-                let angle = |t: f64| -> Result<f64> {
-                    let at = self.between(best, other, t)?;
-                    Ok(value(best) + sign * turned(&self.frames[best], &at)[k])
-                };
+                let angle = |t: f64| value(best) + sign * turned(&self.frames[best], &self.between(best, other, t))[k];
                 let (mut low, mut high) = (0.0, 1.0);
                 for _ in 0..THIRDS {
                     let third = (high - low) / 3.0;
-                    let [a, b] = [angle(low + third)?, angle(high - third)?];
+                    let [a, b] = [angle(low + third), angle(high - third)];
                     most = most.max(a).max(b);
                     if a < b {
                         low += third;
@@ -147,18 +144,17 @@ impl Motion {
                     }
                 }
             }
-            Ok(sign * most)
+            sign * most
         };
-        let range = |k: usize| Ok(extreme(k, 1.0)? - extreme(k, -1.0)?);
-        Ok([range(0)?, range(1)?])
+        Ok([0, 1].map(|k| extreme(k, 1.0) - extreme(k, -1.0)))
     }
 
     /// A position on the way from one frame to a neighbour.
-    fn between(&self, from: usize, to: usize, t: f64) -> Result<Vec<DVec3>> {
+    fn between(&self, from: usize, to: usize, t: f64) -> Vec<DVec3> {
         let mut control: Vec<DVec3> =
             self.frames[from].iter().zip(&self.frames[to]).map(|(a, b)| a.lerp(*b, t)).collect();
         self.linkage.polish(&mut control, &[]);
-        Ok(control)
+        control
     }
 
     /// The snake at a position.
@@ -205,7 +201,7 @@ impl Motion {
             }
             let i = lengths.partition_point(|&length| length <= along).clamp(1, last) - 1;
             let t = ((along - lengths[i]) / (lengths[i + 1] - lengths[i])).clamp(0.0, 1.0);
-            self.between(i, (i + 1) % count, t)
+            Ok(self.between(i, (i + 1) % count, t))
         };
         phases.iter().enumerate().map(at).collect()
     }
