@@ -15,7 +15,7 @@ use glam::DVec3;
 
 use super::curve_step::{Refusal, State, advance, bend, curvature, directed, geodesic_curvature, is_regular, velocity};
 use crate::error::{Error, Result, Status};
-use crate::mesh::grid::check_finite;
+use crate::mesh::grid::check_finite_point;
 use crate::mesh::reference::{ParametricSurface, SurfaceJet};
 
 /// Steps of a curve at most: points that fit into memory with ease.
@@ -118,7 +118,7 @@ pub fn surface_curve<F: Fn(f64, f64) -> SurfaceJet + Sync>(
     course: &Course<'_>,
     options: &Options,
 ) -> Result<CurvatureCurve> {
-    check_finite("start", &[start]).map_err(|error| error.with_place("start"))?;
+    check_finite_point("start", start)?;
     let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
     let (ranges, around) = (surface.ranges(), surface.goes_around());
     let ranges = [0, 1].map(|k| if around[k] { everywhere } else { ranges[k] });
@@ -144,7 +144,7 @@ pub fn curvature_curve(
     options: &Options,
 ) -> Result<CurvatureCurve> {
     check(course, options)?;
-    check_finite("tangent", &[tangent])?;
+    check_finite_point("tangent", tangent)?;
     for k in 0..2 {
         let ([low, high], at) = (ranges[k], start[k]);
         if !(low < high) {

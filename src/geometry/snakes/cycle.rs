@@ -18,7 +18,7 @@ use glam::DVec3;
 use super::drive::{Run, apart, first_velocity, turned};
 use super::{Linkage, Snake};
 use crate::error::{Error, Result, Status, finite};
-use crate::mesh::grid::check_finite;
+use crate::mesh::grid::check_finite_point;
 
 /// How often the interval around an extreme is cut by a third: to 1e-5 of a step, so that the angle is good to 1e-10 of it.
 const THIRDS: usize = 30;
@@ -213,7 +213,7 @@ impl Motion {
     pub fn copies(&self, count: usize, phase: f64, shift: f64, offset: DVec3) -> Result<Vec<Vec<DVec3>>> {
         finite("phase", phase)?;
         finite("shift", shift)?;
-        check_finite("offset", &[offset]).map_err(|error| error.with_place("offset"))?;
+        check_finite_point("offset", offset)?;
         let phases: Vec<f64> = (0..count).map(|k| phase + k as f64 * shift).collect();
         let mut copies = self.at_phases(&phases)?;
         for (k, copy) in copies.iter_mut().enumerate() {
