@@ -91,7 +91,7 @@ pub struct shapeop_snake_options {
     pub max_deviation: f64,
     /// The weight of velocities tangential to the surface. Default 1.
     pub tangential: f64,
-    /// The weight of speeds in the direction of `shapeop_snakeSetDirection`. Default 0.1.
+    /// The weight of speeds in the direction of `shapeop_snakeSetDirection`. Default 0.001.
     pub offset: f64,
     /// The weight of torsions that do not change. Default 0.
     pub rotation: f64,
@@ -101,7 +101,8 @@ pub struct shapeop_snake_options {
     pub alpha: f64,
     /// What the squared way of a projection counts against squared errors of distances, above 0. Default 0.005.
     pub mu: f64,
-    /// What squared errors of heights over the surface count against them, 0 or more. Default 1.
+    /// What squared errors of heights over the surface count against them, 0 or more: above 0 they are met to round-off
+    /// where that is possible. Default 0.01.
     pub surface_weight: f64,
 }
 
@@ -203,6 +204,7 @@ fn named(error: Error) -> Error {
         ("options.projection.max_iterations", "options->projection_iterations"),
         ("options.max_iterations", "options->projection_iterations"),
         ("options.weights.", "options->"),
+        ("options.weights", "options"),
         ("options.projection.", "options->"),
         ("options.", "options->"),
     ];
