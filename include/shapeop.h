@@ -2370,7 +2370,7 @@ typedef struct shapeop_snake_options {
      */
     double tangential;
     /**
-     * The weight of speeds in the direction of `shapeop_snakeSetDirection`. Default 0.1.
+     * The weight of speeds in the direction of `shapeop_snakeSetDirection`. Default 0.001.
      */
     double offset;
     /**
@@ -2390,7 +2390,8 @@ typedef struct shapeop_snake_options {
      */
     double mu;
     /**
-     * What squared errors of heights over the surface count against them, 0 or more. Default 1.
+     * What squared errors of heights over the surface count against them, 0 or more: above 0 they are met to round-off
+     * where that is possible. Default 0.01.
      */
     double surface_weight;
 } shapeop_snake_options;
