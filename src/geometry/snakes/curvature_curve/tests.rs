@@ -296,9 +296,7 @@ fn a_cube_and_a_fold_come_to_an_end() {
 
 #[test]
 fn a_curve_goes_over_a_seam_without_being_told() {
-    use crate::mesh::reference::ParametricSurface;
-    use crate::mesh::surfaces::{cylinder, torus};
-    let around = [-std::f64::consts::PI, std::f64::consts::PI];
+    let around = [-PI, PI];
     let surface = ParametricSurface::new([around; 2], [33, 33], torus(2.0, 0.7)).unwrap();
     let course = Course { curvature: &|_| 1.8, length: 12.0, side: Side::Left };
     let options = Options { steps: 600, ..Options::default() };

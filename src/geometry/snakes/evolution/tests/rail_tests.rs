@@ -205,7 +205,7 @@ fn weights_with_offset() -> Weights {
 #[test]
 fn a_snake_pulled_straight_stops_and_keeps_its_frames() {
     // One end stays, the other runs away on a line that is longer than the snake can follow.
-    let snake = super::super::super::tests::open_snake(6, 4);
+    let snake = open_snake(6, 4);
     let [first, last] = [snake.control()[0], snake.control()[7]];
     let line = Spline::through(&[last, last + 4.0 * (last - first)], false).unwrap();
     let rails = [Rail::Driven { point: 7, curve: &line, start: 0.0, speed: 0.1 }];
