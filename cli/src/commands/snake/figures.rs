@@ -102,7 +102,12 @@ pub struct KeptInReport {
     /// the best rigid motion, and the largest difference of two points' distance.
     pub congruence_rms: f64,
     pub congruence_distances: f64,
+    /// How many positions in a row, from the start on, have the former below 1e-9 of the snake's size.
+    pub congruent_positions: usize,
 }
+
+/// Positions are congruent where they are so to this part of the snake's size.
+const CONGRUENT: f64 = 1e-9;
 
 impl KeptInReport {
     /// Arcs found from control points alone.
@@ -110,7 +115,7 @@ impl KeptInReport {
         let mut kept =
             Self { radius: 0.0, length: 0.0, torsion_deg: 0.0, congruence_rms: 0.0, congruence_distances: 0.0 };
         let (shapes, torsions, points) = (start.shapes(), start.torsions(), start.sample(PER_ARC));
-        for snake in positions {
+        for (i, snake) in positions.iter().enumerate() {
             for (found, shape) in measured(snake).iter().zip(shapes) {
                 kept.radius = kept.radius.max((found.radius - shape.radius).abs());
                 kept.length = kept.length.max((found.length - shape.length).abs());
@@ -121,6 +126,8 @@ impl KeptInReport {
             }
             if let Ok(found) = congruence(&points, &snake.sample(PER_ARC)) {
                 kept.congruence_rms = kept.congruence_rms.max(found.rms);
+                let is_in_row = kept.congruent_positions == i && found.rms <= CONGRUENT * size;
+                kept.congruent_positions += usize::from(is_in_row);
                 kept.congruence_distances = kept.congruence_distances.max(found.distances);
             }
         }

@@ -69,7 +69,7 @@ pub fn check(args: &PositionArgs) -> Result<()> {
 }
 
 /// Every so many numbers below `count`, and the last.
-fn every(count: usize, step: usize) -> Vec<usize> {
+pub fn every(count: usize, step: usize) -> Vec<usize> {
     let mut chosen: Vec<usize> = (0..count).step_by(step).collect();
     if count > 0 && chosen.last() != Some(&(count - 1)) {
         chosen.push(count - 1);

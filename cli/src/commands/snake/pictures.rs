@@ -10,7 +10,7 @@ use shapeop::geometry::snakes::sweep::swept_grid;
 use shapeop::mesh::{Grid, Mesh, ReferenceSurface as _, TriangleMesh};
 
 use super::coverings::joined;
-use super::made::{MOST_ANIMATED, Made};
+use super::made::{MOST_ANIMATED, Made, every};
 use super::report::Report;
 use crate::animation::Animation;
 use crate::colours::{Rgb, Scale};
@@ -62,12 +62,10 @@ pub struct View<'a> {
     swept: Option<Grid>,
 }
 
-/// So many numbers below `count` at most, evenly spread, the first and the last among them.
+/// So many numbers below `count` at most, evenly apart but for the last.
 fn spread(count: usize, most: usize) -> Vec<usize> {
-    if count <= most {
-        return (0..count).collect();
-    }
-    (0..most).map(|k| k * (count - 1) / (most - 1)).collect()
+    let step = count.saturating_sub(1).div_ceil(most - 1).max(1);
+    every(count, step)
 }
 
 /// The same of what goes around: the last is followed by the first.
@@ -282,13 +280,10 @@ impl<'a> View<'a> {
         let mesh = joined(grids);
         let colours = grids.iter().enumerate().flat_map(|(i, grid)| vec![WOODS[i % 2]; grid.quads().count()]);
         let overlay = Overlay { face_colours: colours.collect(), is_smooth: true, ..Overlay::default() };
-        let title = format!("{} of them along the positions of the snake", grids.len());
-        self.drawn(
-            what,
-            "each piece stands for an arc that is made many times".to_owned(),
-            vec![panel(&mesh, title, overlay)],
-            None,
-        )
+        let panels = vec![panel(&mesh, "along the positions of the snake".to_owned(), overlay)];
+        let subtitle = "each piece stands for an arc that is made many times".to_owned();
+        let title = format!("{}: {what}", self.name);
+        Picture { title, subtitle, panels, scale: None, fits_each: false }.to_svg_from(&self.camera)
     }
 
     /// Copies of a linkage side by side.

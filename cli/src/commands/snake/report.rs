@@ -244,7 +244,11 @@ impl Report {
             row("lengths kept to", number(kept.length));
             row("torsions change by", format!("{}°", number(kept.torsion_deg)));
             if self.linkage.is_none() {
-                row("congruent to", format!("{} (rms after a rigid motion)", number(kept.congruence_rms)));
+                let all = measures.positions;
+                let count = kept.congruent_positions;
+                let is_partial = count > 1 && count < all;
+                let first = if is_partial { format!("; the first {count} of {all} to 1e-9") } else { String::new() };
+                row("congruent to", format!("{} (rms after a rigid motion{first})", number(kept.congruence_rms)));
             }
             if let Some(covering) = &measures.covering {
                 let part = percent(covering.deviation / covering.diagonal);
