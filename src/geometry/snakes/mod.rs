@@ -34,6 +34,7 @@ mod motion;
 mod polish;
 pub mod projection;
 pub mod rails;
+pub mod report;
 mod samples;
 mod snake;
 pub mod sweep;
