@@ -168,7 +168,8 @@ fn a_closed_snake_climbs_a_cylinder() {
     let keep = |i: &usize| i % 73 != 72;
     cone.points = (0..cone.points.len()).filter(keep).map(|i| cone.points[i]).collect();
     let mesh = folder.write("cone.obj", &obj(&cone));
-    let text = run(&folder, &["evolve", &mesh, "--section", "0,0,1,0.5", "--arcs", "9", "--left", "--max-deviation", "0.02"]);
+    let text =
+        run(&folder, &["evolve", &mesh, "--section", "0,0,1,0.5", "--arcs", "9", "--left", "--max-deviation", "0.02"]);
     assert!(text.contains("--max-deviation allows more") || text.contains("it moves no more"), "{text}");
     let report = read_json(&folder.path("cone.evolve.json"));
     let frames = report["evolution"]["frames"].as_array().unwrap();
@@ -183,7 +184,8 @@ fn a_snake_on_a_sphere_stays_on_it_and_files_agree() {
     let sphere = parametric_surface(61, 41, [0.0, 2.4], [-0.8, 0.8], at).unwrap();
     let mesh = folder.write("sphere.obj", &obj(&sphere));
     let start = ["--from", "2.5,1.2,-1", "--toward", "0,0,1", "--curvature", "0.5", "--length", "2", "--arcs", "5"];
-    let more = ["--step", "0.04", "--steps", "20", "--max-deviation", "0.05", "--every", "3", "--frames", "--format", "ply"];
+    let more =
+        ["--step", "0.04", "--steps", "20", "--max-deviation", "0.05", "--every", "3", "--frames", "--format", "ply"];
     let coverings = ["--pipes", "0.05", "--lamellae", "0.2", "--offset-weight", "1e-6"];
     let text = run(&folder, &[&["evolve", mesh.as_str()][..], &start, &more, &coverings].concat());
     let report = read_json(&folder.path("sphere.evolve.json"));
@@ -192,8 +194,7 @@ fn a_snake_on_a_sphere_stays_on_it_and_files_agree() {
     let steps = frames.len() - 1;
     let found = positions(&folder, "sphere.evolve");
     assert_eq!(found.len(), steps / 3 + 1 + usize::from(steps % 3 > 0));
-    let triangles: Vec<[u32; 3]> =
-        sphere.faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).collect();
+    let triangles: Vec<[u32; 3]> = sphere.faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).collect();
     let closest = ClosestPoints::of_triangles(&sphere.points, &triangles).unwrap();
     for (k, arcs) in found.iter().enumerate() {
         let told = number(&frames[(3 * k).min(steps)]["deviation"]);
@@ -239,7 +240,10 @@ fn a_fixed_end_stays_and_the_snake_turns_about_it() {
     let flat = parametric_surface(21, 21, [-5.0, 5.0], [-5.0, 5.0], |u, v| DVec3::new(u, v, 0.0)).unwrap();
     let mesh = folder.write("plane.obj", &obj(&flat));
     let start = ["--from", "0,0", "--toward", "1,0", "--curvature", "0.5", "--length", "2", "--arcs", "4"];
-    run(&folder, &[&["evolve", mesh.as_str()][..], &start, &["--fix", "start", "--speed", "0,1", "--steps", "15"]].concat());
+    run(
+        &folder,
+        &[&["evolve", mesh.as_str()][..], &start, &["--fix", "start", "--speed", "0,1", "--steps", "15"]].concat(),
+    );
     let found = positions(&folder, "plane.evolve");
     let end = |arcs: &[Arc]| arcs[3].at(1.0).0;
     let chord = end(&found[0]).length();
@@ -250,7 +254,10 @@ fn a_fixed_end_stays_and_the_snake_turns_about_it() {
     }
     assert!(end(&found[15]).distance(end(&found[0])) > 0.3);
     // The mirror image, by turning the other way.
-    let text = run(&folder, &[&["evolve", mesh.as_str()][..], &start, &["--turn", "right", "--right", "--steps", "3"]].concat());
+    let text = run(
+        &folder,
+        &[&["evolve", mesh.as_str()][..], &start, &["--turn", "right", "--right", "--steps", "3"]].concat(),
+    );
     assert!(text.contains("radius 2.000"), "{text}");
     assert!(end(&positions(&folder, "plane.evolve")[0]).distance(end(&found[0]) * DVec3::new(1.0, -1.0, 1.0)) < 1e-6);
 }
@@ -263,7 +270,8 @@ fn rails_with_one_between_give_a_kinematic_surface() {
     let text = run(&folder, &given);
     assert!(text.contains("rail_a.csv: it ends") && text.contains("congruent to"), "{text}");
     let form = read_json(&folder.path("rail_a.sweep.arcs.json"));
-    let frames: Vec<Vec<DVec3>> = form["frames"].as_array().unwrap().iter().map(|frame| vectors(&frame["control"])).collect();
+    let frames: Vec<Vec<DVec3>> =
+        form["frames"].as_array().unwrap().iter().map(|frame| vectors(&frame["control"])).collect();
     assert!(frames.len() > 20);
     let last = frames[0].len() - 1;
     for control in &frames {
@@ -341,7 +349,9 @@ fn a_linkage_closes_and_rocks_as_is_known() {
         .collect();
     assert_eq!((lines.len(), array.matches("\nl ").count()), (3 * 49, 3));
     let middles = [24, 49 + 24, 98 + 24].map(|i| lines[i]);
-    assert!(lines[49].distance(lines[0] + 2.0 * DVec3::Y) < 1e-9 && lines[98].distance(lines[0] + 4.0 * DVec3::Y) < 1e-9);
+    assert!(
+        lines[49].distance(lines[0] + 2.0 * DVec3::Y) < 1e-9 && lines[98].distance(lines[0] + 4.0 * DVec3::Y) < 1e-9
+    );
     assert!((middles[1] - 2.0 * DVec3::Y).distance(middles[0]) > 0.05);
     // The same arcs by options, and the other way around.
     let torsions = [1.0_f64, -0.7, 0.9, -0.8, 0.6].map(|torsion| torsion.to_degrees().to_string()).join(",");
@@ -389,7 +399,20 @@ fn curves_on_a_sphere_are_circles() {
     let at = |u: f64, v: f64| 2.0 * DVec3::new(u.cos() * v.cos(), u.sin() * v.cos(), v.sin());
     let sphere = obj(&parametric_surface(61, 41, [0.0, 2.4], [-0.8, 0.8], at).unwrap());
     let mesh = folder.write("sphere.obj", &sphere);
-    let given = ["curve", &mesh, "--from", "1.6,1.2,0", "--toward", "0,0,1", "--curvature", "1,0.8", "--length", "1.5", "--turn", "both"];
+    let given = [
+        "curve",
+        &mesh,
+        "--from",
+        "1.6,1.2,0",
+        "--toward",
+        "0,0,1",
+        "--curvature",
+        "1,0.8",
+        "--length",
+        "1.5",
+        "--turn",
+        "both",
+    ];
     run(&folder, &given);
     let table = std::fs::read_to_string(folder.path("sphere.curve.csv")).unwrap();
     let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();

@@ -20,11 +20,11 @@ use super::ruled::PlaceArgs;
 #[command(arg_required_else_help = true)]
 #[command(after_help = "\
 Examples:
-  shapeop snake evolve examples/snakes/roof.obj --from -3,-2.4 --toward 0,1 --curvature 0.28 --length 4 --arcs 6
+  shapeop snake evolve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.35 --length 3.6 --arcs 6
   shapeop snake evolve examples/snakes/tower.obj --section 0,0,1,0.6 --arcs 12     a closed snake climbs a tower
   shapeop snake sweep examples/snakes/rail_a.csv examples/snakes/rail_b.csv --curve examples/snakes/rung.csv --arcs 6 --snap
   shapeop snake linkage examples/snakes/six_arcs.json --copies 8               an array of arcs that flex together
-  shapeop snake curve examples/snakes/roof.obj --from -3,-2.4 --toward 0,1 --curvature 0.2,0.3,0.4 --length 5
+  shapeop snake curve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.2,0.35,0.5 --length 3.5
   shapeop snake fit examples/snakes/arch.csv --arcs 5                          arcs along a curve
   shapeop snake check out/arch.fit.snake.json                                  what is a snake like?
 
@@ -41,10 +41,11 @@ pub enum SnakeCommand {
     /// Move a snake over a mesh: the surface that it sweeps, and its arcs
     #[command(after_help = "\
 Examples:
-  shapeop snake evolve examples/snakes/roof.obj --from -3,-2.4 --toward 0,1 --curvature 0.28 --length 4 --arcs 6
+  shapeop snake evolve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.35 --length 3.6 --arcs 6
   shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 8 --right --pipes 0.05 --lamellae 0.1
-  shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 8 --fix start --speed 0,1 --max-deviation 0.2
-  shapeop snake evolve examples/snakes/roof.obj --snake out/arch.fit.snake.json --offset-surface 0.2 --rotation-weight 10
+  shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 8 --fix start --speed 0,-1 --max-deviation 0.2
+  shapeop snake evolve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.33 --length 3.6 --arcs 6 --offset-surface 0.2
+  shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 6 --right --glide examples/snakes/ridge.csv --snap
   shapeop snake evolve examples/snakes/tower.obj --section 0,0,1,0.6 --arcs 12 --along 0,0,1 --strip --animation
 
 The snake starts along a curve of one curvature (--from ...), a curve file, a plane section of the mesh, or is a file. Sideways \
@@ -83,13 +84,14 @@ Examples:
   shapeop snake fit examples/snakes/arch.csv --arcs 5 --free-radii
   shapeop snake fit examples/snakes/ring.json --arcs 10
 
-Arcs are of one length; of one radius too, unless --free-radii. More arcs come nearer to the curve.")]
+Arcs are of one length; of one radius too, unless --free-radii. Those of a closed snake differ a little, so that it closes. \
+More arcs come nearer to the curve.")]
     Fit(FitArgs),
     /// Curves of constant curvature on a mesh, a fan of them for several curvatures
     #[command(after_help = "\
 Examples:
-  shapeop snake curve examples/snakes/roof.obj --from -3,-2.4 --toward 0,1 --curvature 0.28 --length 4
-  shapeop snake curve examples/snakes/roof.obj --from -3,-2.4 --toward 0,1 --curvature 0.2,0.3,0.4 --length 5 --turn both
+  shapeop snake curve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.35 --length 3.6
+  shapeop snake curve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.2,0.35,0.5 --length 3.5 --turn both
 
 From a point and in a direction there is one curve to the left and one to the right for each curvature above that of the surface \
 in that direction, and none below.")]

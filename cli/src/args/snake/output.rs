@@ -27,6 +27,9 @@ pub struct PositionArgs {
     /// Arcs count as one kind where radii and lengths differ by no more than this part
     #[arg(long, value_name = "PART", default_value_t = 1e-6, allow_negative_numbers = true)]
     pub same: f64,
+    /// A spot of the mesh counts as covered where the swept surface is this near [default: 1 % of the mesh's diagonal]
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    pub within: Option<f64>,
     /// Write each position as a polyline (NAME.frame-NNN.obj)
     #[arg(long)]
     pub frames: bool,

@@ -112,8 +112,15 @@ const CONGRUENT: f64 = 1e-9;
 impl KeptInReport {
     /// Arcs found from control points alone.
     pub fn of(start: &Snake, positions: &[Snake]) -> Self {
-        let mut kept =
-            Self { radius: 0.0, length: 0.0, torsion_deg: 0.0, congruence_rms: 0.0, congruence_distances: 0.0 };
+        let mut kept = Self {
+            radius: 0.0,
+            length: 0.0,
+            torsion_deg: 0.0,
+            congruence_rms: 0.0,
+            congruence_distances: 0.0,
+            congruent_positions: 0,
+        };
+        let size = start.size();
         let (shapes, torsions, points) = (start.shapes(), start.torsions(), start.sample(PER_ARC));
         for (i, snake) in positions.iter().enumerate() {
             for (found, shape) in measured(snake).iter().zip(shapes) {

@@ -67,7 +67,9 @@ pub fn names(guides: &[Guide], fixed: &[Point]) -> Names {
         ("snake", "snake"),
     ]);
     for (k, guide) in guides.iter().enumerate() {
-        names = names.with(RAILS[k.min(RAILS.len() - 1)], guide.name.clone());
+        if let (Some(rail), Some(point)) = (RAILS.get(k), RAIL_POINTS.get(k)) {
+            names = names.with(rail, guide.name.clone()).with(point, guide.name.clone());
+        }
     }
     for (k, point) in fixed.iter().enumerate().take(FIXED.len()) {
         let word = match point {
@@ -83,6 +85,16 @@ pub fn names(guides: &[Guide], fixed: &[Point]) -> Names {
 /// Places of the first rails and fixed points: hardly anyone has more.
 const RAILS: [&str; 8] =
     ["rails[0]", "rails[1]", "rails[2]", "rails[3]", "rails[4]", "rails[5]", "rails[6]", "rails[7]"];
+const RAIL_POINTS: [&str; 8] = [
+    "rails[0].point",
+    "rails[1].point",
+    "rails[2].point",
+    "rails[3].point",
+    "rails[4].point",
+    "rails[5].point",
+    "rails[6].point",
+    "rails[7].point",
+];
 const FIXED: [&str; 4] = ["fixed[0]", "fixed[1]", "fixed[2]", "fixed[3]"];
 
 /// Evolves with a bar, which Ctrl-C stops.

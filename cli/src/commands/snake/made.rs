@@ -6,6 +6,7 @@ use std::time::Instant;
 use anyhow::{Context as _, Result, bail};
 use glam::DVec3;
 use shapeop::geometry::snakes::arc_list::ArcList;
+use shapeop::geometry::snakes::report::{Reference, ReportOptions, report as covering};
 use shapeop::geometry::snakes::sweep::swept_grid;
 use shapeop::geometry::snakes::{Snake, file};
 use shapeop::mesh::reference::ReferenceMesh;
@@ -15,7 +16,7 @@ use super::coverings::{joined, lamellae, pipes, polylines_obj};
 use super::figures::KeptInReport;
 use super::names::Names;
 use super::pictures::{self, View};
-use super::report::{KindInReport, Measures, Report};
+use super::report::{Measures, Report};
 use crate::Ending;
 use crate::args::snake::{PositionArgs, SnakeOutputArgs};
 use crate::output::{Output, say};
@@ -58,6 +59,9 @@ pub fn check(args: &PositionArgs) -> Result<()> {
     }
     if !(args.same >= 0.0 && args.same.is_finite()) {
         bail!("--same: expected a finite number of at least 0, found {}", args.same);
+    }
+    if let Some(within) = args.within.filter(|within| !(*within > 0.0 && within.is_finite())) {
+        bail!("--within: expected a finite number above 0, found {within}");
     }
     if let Some(radius) = args.pipes.filter(|radius| !(*radius > 0.0 && radius.is_finite())) {
         bail!("--pipes: expected a finite radius above 0, found {radius}");
@@ -109,7 +113,7 @@ pub fn write(
     let standing = made.surface.filter(|_| !positions.flat).map(|(_, reference)| reference);
     let lamellae =
         positions.lamellae.map(|depth| lamellae(&chosen_snakes, depth, positions.per_arc, standing)).transpose()?;
-    report.measures = Some(measures(made, &snakes, &list, args)?);
+    report.measures = Some(measures(made, &snakes, &frames, comes_back, positions)?);
 
     let mut output = Output::new(&args.place.out, input, command, args.place.picture)?;
     let format = args.place.format.into();
@@ -164,20 +168,25 @@ pub fn write(
     Ok(if report.was_interrupted { Ending::Interrupted } else { Ending::Done })
 }
 
-fn measures(made: &Made<'_>, snakes: &[Snake], list: &ArcList, args: &SnakeOutputArgs) -> Result<Measures> {
-    let _ = args;
-    let kind = |kind: &shapeop::geometry::snakes::sweep::ArcKind| KindInReport {
-        radius: kind.shape.radius,
-        length: kind.shape.length,
-        count: kind.count * snakes.len(),
-    };
-    Ok(Measures {
-        positions: snakes.len(),
-        arcs: made.snake.shapes().len() * snakes.len(),
-        kinds: list.kinds().iter().map(kind).collect(),
-        kept: KeptInReport::of(&made.snake, snakes),
-        covering: None,
-    })
+fn measures(
+    made: &Made<'_>,
+    snakes: &[Snake],
+    frames: &[Vec<DVec3>],
+    comes_back: bool,
+    args: &PositionArgs,
+) -> Result<Measures> {
+    let options = ReportOptions { tolerance: args.same, per_arc: args.per_arc, distance: args.within, comes_back };
+    let reference = made.surface.map(|(_, reference)| Reference { mesh: reference.mesh(), surface: reference });
+    let covering = covering(&made.snake, frames, reference, &options).map_err(|error| {
+        Names::new(&[
+            ("options.tolerance", "--same"),
+            ("options.per_arc", "--per-arc"),
+            ("options.distance", "--within"),
+        ])
+        .of(error)
+    })?;
+    let diagonal = made.surface.map(|(_, reference)| reference.mesh().diagonal());
+    Ok(Measures { covering, kept: KeptInReport::of(&made.snake, snakes), diagonal })
 }
 
 fn write_pictures(

@@ -183,7 +183,7 @@ impl<'a> View<'a> {
     pub fn main(&self, report: &Report) -> Result<String> {
         let count = self.snakes.len();
         let arcs = self.made.snake.shapes().len();
-        let kinds = report.measures.as_ref().map_or(1, |measures| measures.kinds.len());
+        let kinds = report.measures.as_ref().map_or(1, |measures| measures.covering.kinds.len());
         let word = if kinds == 1 { "one kind" } else { "kinds" };
         let kinds = if kinds == 1 { String::new() } else { format!("{kinds} ") };
         let subtitle = format!("{count} positions of {arcs} arcs of {kinds}{word}");
@@ -269,7 +269,7 @@ impl<'a> View<'a> {
             mark: None,
             end_words: ["", ""],
         };
-        let covered = report.measures.as_ref().and_then(|measures| measures.covering.as_ref());
+        let covered = report.measures.as_ref().and_then(|measures| measures.covering.reference.as_ref());
         let subtitle =
             covered.map_or(String::new(), |covering| format!("covers {} of the mesh", percent(covering.coverage)));
         Some(self.drawn("deviation", subtitle, vec![panel], Some(scale)))

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use anyhow::Result;
 use serde::Serialize;
 use shapeop::geometry::snakes::evolution::Options;
+use shapeop::geometry::snakes::report::Report as Covering;
 
 use super::curve::CurveInReport;
 use super::figures::{FrameInReport, KeptInReport, SnakeInReport, lowest_and_greatest};
@@ -157,35 +158,12 @@ pub struct ArrayInReport {
 /// What all positions come to.
 #[derive(Serialize)]
 pub struct Measures {
-    pub positions: usize,
-    /// Arcs of all positions.
-    pub arcs: usize,
-    pub kinds: Vec<KindInReport>,
+    /// docs/snake-report.schema.json
+    pub covering: Covering,
     pub kept: KeptInReport,
+    /// That of the mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub covering: Option<CoveringInReport>,
-}
-
-#[derive(Serialize)]
-pub struct KindInReport {
-    pub radius: f64,
-    pub length: f64,
-    /// In all positions together.
-    pub count: usize,
-}
-
-/// How a swept surface lies on the mesh.
-#[derive(Serialize)]
-pub struct CoveringInReport {
-    /// The part of the mesh, by area, that has the swept surface within `within`.
-    pub coverage: f64,
-    pub within: f64,
-    /// The largest distance of an arc from the mesh, at which position, and where.
-    pub deviation: f64,
-    pub position: usize,
-    pub at: [f64; 3],
-    /// The diagonal of the mesh.
-    pub diagonal: f64,
+    pub diagonal: Option<f64>,
 }
 
 impl Report {
@@ -232,38 +210,39 @@ impl Report {
             row("stopped", format!("{}{advice}", stop.words));
         }
         if let Some(measures) = &self.measures {
-            let kinds = measures.kinds.len();
-            let each = match measures.kinds.as_slice() {
+            let covering = &measures.covering;
+            let kinds = covering.kinds.len();
+            let each = match covering.kinds.as_slice() {
                 [one] => format!(", radius {}, length {}", number(one.radius), number(one.length)),
                 _ => String::new(),
             };
             let word = if kinds == 1 { "kind" } else { "kinds" };
-            row("arcs", format!("{} of {kinds} {word}{each}", measures.arcs));
+            row("arcs", format!("{} of {kinds} {word}{each}", covering.instances));
             let kept = &measures.kept;
             row("radii kept to", number(kept.radius));
             row("lengths kept to", number(kept.length));
             row("torsions change by", format!("{}°", number(kept.torsion_deg)));
             if self.linkage.is_none() {
-                let all = measures.positions;
+                let all = covering.positions;
                 let count = kept.congruent_positions;
                 let is_partial = count > 1 && count < all;
                 let first = if is_partial { format!("; the first {count} of {all} to 1e-9") } else { String::new() };
                 row("congruent to", format!("{} (rms after a rigid motion{first})", number(kept.congruence_rms)));
             }
-            if let Some(covering) = &measures.covering {
-                let part = percent(covering.deviation / covering.diagonal);
-                row(
-                    "arcs to the mesh",
-                    format!(
-                        "{} ({part} of the diagonal), at position {}",
-                        number(covering.deviation),
-                        covering.position
-                    ),
+            if covering.area > 0.0 {
+                row("area swept", number(covering.area));
+            }
+            if let (Some(reference), Some(diagonal)) = (&covering.reference, measures.diagonal) {
+                let deviation = reference.deviation;
+                let part = percent(deviation.max / diagonal);
+                let words = format!(
+                    "{} at most ({part} of the diagonal), {} rms",
+                    number(deviation.max),
+                    number(deviation.rms)
                 );
-                row(
-                    "covered",
-                    format!("{} of the mesh, within {}", percent(covering.coverage), number(covering.within)),
-                );
+                row("from the mesh", words);
+                let within = number(reference.distance);
+                row("covered", format!("{} of the mesh, within {within}", percent(reference.coverage)));
             }
         }
         if let Some(snake) = &self.snake {
