@@ -61,7 +61,7 @@ fn what_is_wrong_is_named() {
             evolve(&roof, "--from 0,0,99 --toward 1,0 --curvature 1 --length 1 --arcs 2"),
             "--from: expected a point that is nearer",
         ),
-        (from("--curvature 0.1 --length 1 --arcs 2"), "--curvature: expected at least 0.5"),
+        (from("--curvature 0.1 --length 1 --arcs 2"), "--curvature: expected at least 0."),
         (from("--curvature -1 --length 1 --arcs 2"), "--curvature"),
         (from("--curvature 1 --length 0 --arcs 2"), "--length: expected a finite length above 0, found 0"),
         (from("--curvature 1 --length 1 --arcs 0"), "--arcs: expected 1 to 10000, found 0"),

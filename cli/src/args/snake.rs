@@ -21,7 +21,7 @@ use super::ruled::PlaceArgs;
 #[command(after_help = "\
 Examples:
   shapeop snake evolve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.35 --length 3.6 --arcs 6
-  shapeop snake evolve examples/snakes/tower.obj --section 0,0,1,0.6 --arcs 12     a closed snake climbs a tower
+  shapeop snake evolve examples/snakes/tower.obj --curve examples/snakes/wave.json --arcs 16 --along 0,0,1     up a tower
   shapeop snake sweep examples/snakes/rail_a.csv examples/snakes/rail_b.csv --curve examples/snakes/rung.csv --arcs 6 --snap
   shapeop snake linkage examples/snakes/six_arcs.json --copies 8               an array of arcs that flex together
   shapeop snake curve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.2,0.35,0.5 --length 3.5
@@ -46,7 +46,8 @@ Examples:
   shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 8 --fix start --speed 0,-1 --max-deviation 0.2
   shapeop snake evolve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.33 --length 3.6 --arcs 6 --offset-surface 0.2
   shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 6 --right --glide examples/snakes/ridge.csv --snap
-  shapeop snake evolve examples/snakes/tower.obj --section 0,0,1,0.6 --arcs 12 --along 0,0,1 --strip --animation
+  shapeop snake evolve examples/snakes/roof.obj --section 1,0.2,0,2 --arcs 8 --free-radii
+  shapeop snake evolve examples/snakes/tower.obj --curve examples/snakes/wave.json --arcs 16 --along 0,0,1 --strip --animation
 
 The snake starts along a curve of one curvature (--from ...), a curve file, a plane section of the mesh, or is a file. Sideways \
 means within the surface, at right angles to the snake; left is seen from the side that the faces' normals point to.

@@ -12,6 +12,7 @@ use super::report::Report;
 use super::start;
 use crate::Ending;
 use crate::args::snake::SnakeCheckArgs;
+use crate::commands::ruled::counted;
 use crate::output::say;
 use crate::table::{aligned, number};
 use shapeop::geometry::snakes::freedoms::freedoms_on_surface;
@@ -60,7 +61,7 @@ pub fn run(args: &SnakeCheckArgs, is_quiet: bool) -> Result<Ending> {
         rows.insert(3, row("torsions", format!("{}°", lowest_and_greatest(&torsions))));
     }
     if let Some(freedoms) = told.linkage_freedoms {
-        rows.push(row("as a linkage", format!("{freedoms} freedoms")));
+        rows.push(row("as a linkage", counted(freedoms, "freedom")));
     }
     if let Some(determinant) = told.determinant {
         let words = if determinant.abs() < 1e-6 { ": singular, or nearly" } else { "" };

@@ -1,8 +1,10 @@
 //! `snake evolve`: a snake moves over a mesh.
 
+use std::f64::consts::TAU;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
+use shapeop::geometry::snakes::ArcShape;
 use shapeop::geometry::snakes::evolution::{Direction, Stop, Task, Weights};
 use shapeop::mesh::file::read_source;
 use shapeop::mesh::reference::ReferenceMesh;
@@ -19,6 +21,10 @@ use crate::Ending;
 use crate::args::snake::{EvolveArgs, Point};
 use crate::progress::catch_interrupts;
 use crate::table::number;
+
+/// A closed curve turns by a full turn at least, and by no more only where it is flat and convex (Fenchel 1929): as arcs keep their
+/// angles, a snake that does so is rigid. Within this part of it.
+const CONVEX: f64 = 1e-6;
 
 /// The part of the mesh's diagonal that arcs may be away from it, if nothing else is asked for.
 const MAX_DEVIATION: f64 = 0.01;
@@ -96,6 +102,13 @@ pub fn run(args: &EvolveArgs, is_quiet: bool) -> Result<Ending> {
     let (frames, times) = going::positions(&found);
     let stop = going::stop_in_words(found.stop, &options, &guides);
     let mut warnings = std::mem::take(&mut start.warnings);
+    let turn: f64 = start.snake.shapes().iter().map(ArcShape::angle_rad).sum();
+    if start.snake.is_closed() && turn < TAU * (1.0 + CONVEX) {
+        warnings.push(
+            "the snake is flat and convex, as it turns around once only: it stays so, and moves as it is or not at all"
+                .to_owned(),
+        );
+    }
     if found.frames[0].deviation > max_deviation {
         warnings.push(format!(
             "the snake starts {} from the mesh, more than --max-deviation {}",

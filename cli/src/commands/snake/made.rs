@@ -140,7 +140,7 @@ pub fn write(
         made.arrays.first().map(|copies| copies.iter().map(|control| made.moved(control)).collect::<Result<Vec<_>>>());
     let array = array.transpose()?;
     if let Some(array) = &array {
-        output.text("array", ".array.obj", &polylines_obj(&lines(array), false))?;
+        output.text("copies", ".array.obj", &polylines_obj(&lines(array), false))?;
     }
     if positions.frames {
         for (i, snake) in chosen.iter().zip(&chosen_snakes) {
@@ -149,10 +149,10 @@ pub fn write(
         }
     }
     if let Some(grids) = &pipes {
-        output.other_mesh("pipes", ".pipes", &joined(grids), format)?;
+        output.other_mesh("pipe mesh", ".pipes", &joined(grids), format)?;
     }
     if let Some(grids) = &lamellae {
-        output.other_mesh("lamellae", ".lamellae", &joined(grids), format)?;
+        output.other_mesh("lamella mesh", ".lamellae", &joined(grids), format)?;
     }
     if output.wants_pictures() || positions.animation {
         let view = View::new(made, &snakes, input)?;

@@ -13,6 +13,7 @@ use super::rails::RailInReport;
 use super::start::StartInReport;
 use crate::args::snake::MotionArgs;
 use crate::commands::canal::in_json;
+use crate::commands::ruled::counted;
 use crate::output::Output;
 use crate::table::{number, percent};
 
@@ -200,7 +201,7 @@ impl Report {
                 let word = if turns == 0 { "rocks by" } else { "turns around, by" };
                 row(name, format!("{word} {}°", number(linkage.ranges_deg[k])));
             }
-            row("drive", format!("changes ends {} times", linkage.drive_switches));
+            row("drive", format!("changes ends {}", counted(linkage.drive_switches, "time")));
         }
         if let Some(evolution) = &self.evolution {
             row("steps", evolution.frames.len().saturating_sub(1).to_string());
@@ -216,8 +217,7 @@ impl Report {
                 [one] => format!(", radius {}, length {}", number(one.radius), number(one.length)),
                 _ => String::new(),
             };
-            let word = if kinds == 1 { "kind" } else { "kinds" };
-            row("arcs", format!("{} of {kinds} {word}{each}", covering.instances));
+            row("arcs", format!("{} of {}{each}", covering.instances, counted(kinds, "kind")));
             let kept = &measures.kept;
             row("radii kept to", number(kept.radius));
             row("lengths kept to", number(kept.length));
