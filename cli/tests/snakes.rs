@@ -150,7 +150,7 @@ fn a_closed_snake_climbs_a_cylinder() {
             assert!((p.z - 1.25 - 0.1 * i as f64).abs() < 1e-6 && (p.truncate().length() - 2.0).abs() < 5e-3, "{p}");
         }
     }
-    // On a cone the way up is narrower: it stops, keeps what there is, and says why.
+    // What is flat and convex turns around once, and stays so (Fenchel): through the narrower part of a cone it does not go.
     let cone = |u: f64, v: f64| DVec3::new((3.0 - v) * u.cos(), (3.0 - v) * u.sin(), v);
     let mut cone = parametric_surface(73, 11, [0.0, TAU], [0.0, 2.0], cone).unwrap();
     cone.faces.iter_mut().flatten().for_each(|i| *i = *i / 73 * 72 + *i % 73 % 72);
@@ -164,6 +164,55 @@ fn a_closed_snake_climbs_a_cylinder() {
     let frames = report["evolution"]["frames"].as_array().unwrap();
     assert!(frames.len() < 20 && frames.iter().all(|frame| number(&frame["deviation"]) <= 0.02), "{}", frames.len());
     assert_eq!(positions(&folder, "cone.evolve").len(), frames.len());
+}
+
+#[test]
+fn a_snake_on_a_sphere_stays_on_it_and_files_agree() {
+    let folder = Folder::new("snakes-sphere");
+    let at = |u: f64, v: f64| 3.0 * DVec3::new(u.cos() * v.cos(), u.sin() * v.cos(), v.sin());
+    let sphere = parametric_surface(61, 41, [0.0, 2.4], [-0.8, 0.8], at).unwrap();
+    let mesh = folder.write("sphere.obj", &obj(&sphere));
+    let start = ["--from", "2.5,1.2,-1", "--toward", "0,0,1", "--curvature", "0.5", "--length", "2", "--arcs", "5"];
+    let more =
+        ["--step", "0.04", "--steps", "20", "--max-deviation", "0.05", "--every", "3", "--frames", "--format", "ply"];
+    let coverings = ["--pipes", "0.05", "--lamellae", "0.2", "--offset-weight", "1e-6", "--right"];
+    let given = ["evolve", &mesh, "--section", "0,0,1,0.5", "--arcs", "9", "--along", "0,0,1"];
+    let text = run(&folder, &[&given[..], &["--orthogonal-weight", "0.01"]].concat());
+    for part in ["it moves no more", "warning: the snake is flat and convex", "warning: there is one position only"] {
+        assert!(text.contains(part), "{text}");
+    }
+    assert_eq!(positions(&folder, "cone.evolve").len(), 1);
+    assert!(!folder.path("cone.evolve.obj").exists() && folder.path("cone.evolve.start.json").exists());
+}
+
+#[test]
+fn a_wavy_closed_snake_climbs_a_tower_of_changing_sections() {
+    let folder = Folder::new("snakes-tower");
+    let (tower, wave) = (example("tower.obj"), example("wave.json"));
+    let given = ["evolve", &tower, "--curve", &wave, "--arcs", "16", "--along", "0,0,1", "--max-deviation", "0.06"];
+    let text = run(&folder, &given);
+    assert!(text.contains("--max-deviation allows more"), "{text}");
+    let report = read_json(&folder.path("tower.evolve.json"));
+    let covering = &report["measures"]["covering"];
+    assert!(number(&covering["reference"]["coverage"]) > 0.5, "{text}");
+    let frames = report["evolution"]["frames"].as_array().unwrap();
+    assert!(frames.iter().all(|frame| number(&frame["deviation"]) <= 0.06));
+    // Its arcs turn against each other a lot, and are what they were.
+    assert!(number(&report["measures"]["kept"]["torsion_deg"]) > 30.0);
+    let mesh = file::read(&tower).unwrap();
+    let triangles: Vec<[u32; 3]> = mesh.faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).collect();
+    let closest = ClosestPoints::of_triangles(&mesh.points, &triangles).unwrap();
+    let found = positions(&folder, "tower.evolve");
+    for arcs in &found {
+        assert!(roughness(arcs, true) < 1e-9);
+        for (arc, first) in arcs.iter().zip(&found[0]) {
+            assert!((arc.radius - first.radius).abs() < 1e-12 && (arc.angle - first.angle).abs() < 1e-12);
+            let (p, _) = arc.at(0.5);
+            assert!(closest.nearest(p).distance(p) < 0.06 + 2e-3, "{p}");
+        }
+    }
+    let rise = found[found.len() - 1][0].start.z - found[0][0].start.z;
+    assert!(rise > 2.0, "{rise}");
 }
 
 #[test]
