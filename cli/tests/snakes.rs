@@ -157,29 +157,10 @@ fn a_closed_snake_climbs_a_cylinder() {
     let keep = |i: &usize| i % 73 != 72;
     cone.points = (0..cone.points.len()).filter(keep).map(|i| cone.points[i]).collect();
     let mesh = folder.write("cone.obj", &obj(&cone));
-    let text =
-        run(&folder, &["evolve", &mesh, "--section", "0,0,1,0.5", "--arcs", "9", "--left", "--max-deviation", "0.02"]);
-    assert!(text.contains("--max-deviation allows more") || text.contains("it moves no more"), "{text}");
-    let report = read_json(&folder.path("cone.evolve.json"));
-    let frames = report["evolution"]["frames"].as_array().unwrap();
-    assert!(frames.len() < 20 && frames.iter().all(|frame| number(&frame["deviation"]) <= 0.02), "{}", frames.len());
-    assert_eq!(positions(&folder, "cone.evolve").len(), frames.len());
-}
-
-#[test]
-fn a_snake_on_a_sphere_stays_on_it_and_files_agree() {
-    let folder = Folder::new("snakes-sphere");
-    let at = |u: f64, v: f64| 3.0 * DVec3::new(u.cos() * v.cos(), u.sin() * v.cos(), v.sin());
-    let sphere = parametric_surface(61, 41, [0.0, 2.4], [-0.8, 0.8], at).unwrap();
-    let mesh = folder.write("sphere.obj", &obj(&sphere));
-    let start = ["--from", "2.5,1.2,-1", "--toward", "0,0,1", "--curvature", "0.5", "--length", "2", "--arcs", "5"];
-    let more =
-        ["--step", "0.04", "--steps", "20", "--max-deviation", "0.05", "--every", "3", "--frames", "--format", "ply"];
-    let coverings = ["--pipes", "0.05", "--lamellae", "0.2", "--offset-weight", "1e-6", "--right"];
     let given = ["evolve", &mesh, "--section", "0,0,1,0.5", "--arcs", "9", "--along", "0,0,1"];
     let text = run(&folder, &[&given[..], &["--orthogonal-weight", "0.01"]].concat());
     for part in ["it moves no more", "warning: the snake is flat and convex", "warning: there is one position only"] {
-        assert!(text.contains(part), "{text}");
+        assert!(text.contains(part), "{part} is not in\n{text}");
     }
     assert_eq!(positions(&folder, "cone.evolve").len(), 1);
     assert!(!folder.path("cone.evolve.obj").exists() && folder.path("cone.evolve.start.json").exists());

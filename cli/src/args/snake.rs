@@ -46,7 +46,7 @@ Examples:
   shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 8 --fix start --speed 0,-1 --max-deviation 0.2
   shapeop snake evolve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.33 --length 3.6 --arcs 6 --offset-surface 0.2
   shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 6 --right --glide examples/snakes/ridge.csv --snap
-  shapeop snake evolve examples/snakes/roof.obj --section 1,0.2,0,2 --arcs 8 --free-radii
+  shapeop snake evolve examples/snakes/roof.obj --section 1,0.2,0,2 --arcs 8 --free-radii --along -1,0,0 --second-order --max-deviation 0.4
   shapeop snake evolve examples/snakes/tower.obj --curve examples/snakes/wave.json --arcs 16 --along 0,0,1 --strip --animation
 
 The snake starts along a curve of one curvature (--from ...), a curve file, a plane section of the mesh, or is a file. Sideways \
