@@ -67,7 +67,7 @@ fn what_is_wrong_is_named() {
         (from("--curvature 1 --length 1 --arcs 0"), "--arcs: expected 1 to 10000, found 0"),
         (from("--curvature 4 --length 2 --arcs 2"), "--arcs: expected at least 3"),
         (
-            evolve(&sphere, "--from 1.2,1.6,0 --toward 1.2,1.6,0 --curvature 1 --length 1 --arcs 2"),
+            evolve(&sphere, "--from 1.2,1.6,0 --toward 0,0,0 --curvature 1 --length 1 --arcs 2"),
             "--toward: expected a direction",
         ),
         (
@@ -165,7 +165,9 @@ fn what_is_wrong_is_named() {
         if arguments[0] != "check" {
             whole.extend(["-o", out.0.to_str().unwrap(), "--picture", "none"]);
         }
-        let stderr = refused(&shapeop(&whole), 1);
+        let output = shapeop(&whole);
+        assert!(!output.status.success(), "{arguments:?}");
+        let stderr = refused(&output, 1);
         assert!(stderr.starts_with("error: ") && stderr.contains(expected), "{arguments:?}: {stderr}");
         assert_eq!(stderr.trim_end().lines().count(), 1, "{stderr}");
     }
