@@ -24,6 +24,7 @@ pub mod cycle;
 mod drive;
 pub mod evolution;
 mod face_patch;
+mod feet;
 pub mod file;
 pub mod fit;
 pub mod freedoms;
