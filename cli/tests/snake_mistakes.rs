@@ -85,6 +85,10 @@ fn what_is_wrong_is_named() {
         (with_snake("--step 0"), "--step: expected a number above 0, found 0"),
         (with_snake("--max-deviation -1"), "--max-deviation: expected a number of 0 or more, found -1"),
         (with_snake("--offset-weight -1"), "--offset-weight: expected a number of 0 or more, found -1"),
+        (
+            with_snake("--offset-weight 0 --tangential-weight 0"),
+            "--offset-weight and the other weights: expected a weight above 0",
+        ),
         (with_snake("--second-order --alpha 0"), "--alpha: expected a number above 0, found 0"),
         (with_snake("--along 0,0,0"), "--along: expected a direction"),
         (with_snake("--fix 99"), "--fix 99: 99 is out of range for 7 control points"),

@@ -205,7 +205,7 @@ fn a_snake_on_a_sphere_stays_on_it_and_files_agree() {
     let start = ["--from", "2.5,1.2,-1", "--toward", "0,0,1", "--curvature", "0.5", "--length", "2", "--arcs", "5"];
     let more =
         ["--step", "0.04", "--steps", "20", "--max-deviation", "0.05", "--every", "3", "--frames", "--format", "ply"];
-    let coverings = ["--pipes", "0.05", "--lamellae", "0.2", "--offset-weight", "1e-6", "--right"];
+    let coverings = ["--pipes", "0.05", "--lamellae", "0.2", "--right"];
     let text = run(&folder, &[&["evolve", mesh.as_str()][..], &start, &more, &coverings].concat());
     let report = read_json(&folder.path("sphere.evolve.json"));
     let frames = report["evolution"]["frames"].as_array().unwrap();

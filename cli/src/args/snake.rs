@@ -44,7 +44,7 @@ Examples:
   shapeop snake evolve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.35 --length 3.6 --arcs 6
   shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 8 --right --pipes 0.05 --lamellae 0.1
   shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 8 --fix start --speed 0,-1 --max-deviation 0.2
-  shapeop snake evolve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.33 --length 3.6 --arcs 6 --offset-surface 0.2
+  shapeop snake evolve examples/snakes/roof.obj --from 3,-1.5 --toward 0.3,1 --curvature 0.33 --length 3.6 --arcs 6 --offset-surface 0.2 --rotation-weight 0.01
   shapeop snake evolve examples/snakes/roof.obj --curve examples/snakes/arch.csv --arcs 6 --right --glide examples/snakes/ridge.csv --snap
   shapeop snake evolve examples/snakes/roof.obj --section 1,0.2,0,2 --arcs 8 --free-radii --along -1,0,0 --second-order --max-deviation 0.4
   shapeop snake evolve examples/snakes/tower.obj --curve examples/snakes/wave.json --arcs 16 --along 0,0,1 --strip --animation
@@ -53,7 +53,7 @@ The snake starts along a curve of one curvature (--from ...), a curve file, a pl
 means within the surface, at right angles to the snake; left is seen from the side that the faces' normals point to.
 It goes on until --steps are taken, the arcs would be farther from the mesh than --max-deviation, a rail ends, it is back at its \
 start, or cannot move: the report says which, and everything so far is written.
-Weights are of squares: raise --rotation-weight to keep torsions, lower --offset-weight to stay nearer to a smooth surface.")]
+Weights are of squares: raise --rotation-weight to keep torsions, --offset-weight to keep speeds more than the surface.")]
     Evolve(Box<EvolveArgs>),
     /// Move a snake along rails, without a surface: the ends run on two of them, and it glides on the others
     #[command(after_help = "\

@@ -62,6 +62,7 @@ pub fn names(guides: &[Guide], fixed: &[Point]) -> Names {
         ("options.weights.offset", "--offset-weight"),
         ("options.weights.rotation", "--rotation-weight"),
         ("options.weights.orthogonal", "--orthogonal-weight"),
+        ("options.weights", "--offset-weight and the other weights"),
         ("speeds", "--speed"),
         ("direction", "--along"),
         ("snake", "snake"),
