@@ -511,6 +511,9 @@ fn the_examples_of_the_help_run() {
 #[test]
 fn the_commands_of_the_documentation_run() {
     let folder = workplace("snakes-docs", "snakes");
+    let (shell, meshes) = ("botanic-garden-bubble-0.obj", folder.path("examples/meshes"));
+    std::fs::create_dir_all(&meshes).unwrap();
+    std::fs::copy(repository().join("examples/meshes").join(shell), meshes.join(shell)).unwrap();
     let lines = commands_of("docs/snakes.md");
     assert!(lines.len() >= 10, "{}", lines.len());
     for line in lines {
