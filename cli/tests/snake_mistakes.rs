@@ -110,7 +110,7 @@ fn what_is_wrong_is_named() {
         (with_snake("--lamellae -99 --flat"), "--lamellae: expected"),
         (list(&["sweep", &a, &b, "--snake", &closed]), "RAIL: expected an open snake"),
         (list(&["sweep", &a, &b, "--curve", &rung, "--arcs", "6"]), "--snap moves it there"),
-        (list(&["sweep", &a, &word, "--curve", &rung, "--arcs", "6"]), "word.csv:2: "),
+        (list(&["sweep", &a, &word, "--curve", &rung, "--arcs", "6", "--snap"]), "word.csv:2: "),
         (list(&["sweep", &a, &c, "--curve", &line, "--arcs", "2"]), "line.csv: points: "),
         (list(&["linkage", &seven]), "seven.json: expected a linkage with one freedom, found 2"),
         (list(&["linkage", &closed]), "ring.fit.snake.json: expected an open snake, found a closed one"),
