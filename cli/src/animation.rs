@@ -84,7 +84,7 @@ impl Palette {
             *count += 1;
             (0..3).for_each(|k| sums[k] += u64::from(pixel[k]));
         }
-        let mut buckets: Vec<([u8; 3], (u64, [u64; 3]))> = counts.into_iter().collect();
+        let mut buckets: Vec<_> = counts.into_iter().collect();
         buckets.sort_by_key(|(bucket, (count, _))| (std::cmp::Reverse(*count), *bucket));
         let mean = |(count, sums): (u64, [u64; 3])| sums.map(|sum| ((sum + count / 2) / count) as u8);
         Self(buckets.into_iter().take(COLOURS).map(|(_, found)| mean(found)).collect())

@@ -39,8 +39,7 @@ pub fn run(args: &CurveArgs, is_quiet: bool) -> Result<Ending> {
         Turns::Right => &[(Side::Right, "right")],
         Turns::Both => &[(Side::Left, "left"), (Side::Right, "right")],
     };
-    let (mut curves, mut told, mut warnings): (Vec<(Vec<DVec3>, Vec<f64>)>, _, _) =
-        (Vec::new(), Vec::new(), Vec::new());
+    let (mut curves, mut told, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     for &curvature in &args.curvature {
         for &(side, turn) in sides {
             let asked =

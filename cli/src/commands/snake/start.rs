@@ -233,7 +233,7 @@ fn section(
     args: &FitOptionArgs,
     is_quiet: bool,
 ) -> Result<Start> {
-    if !(normal.length() > 0.0) {
+    if normal.length() == 0.0 {
         bail!("--section: expected a normal other than 0,0,0");
     }
     let values: Vec<f64> = mesh.points().iter().map(|point| normal.dot(*point)).collect();
@@ -285,12 +285,11 @@ fn start_of(kind: &'static str, file: Option<String>, length: f64, found: Fitted
     Start { snake: found.snake, told, warnings }
 }
 
+/// What is called before each iteration of a fit.
+type Watch<'a> = &'a mut dyn FnMut(&FitProgress) -> ControlFlow<()>;
+
 /// Fits with a bar.
-fn fitting<T>(
-    arcs: usize,
-    is_quiet: bool,
-    fit: &mut dyn FnMut(&mut dyn FnMut(&FitProgress) -> ControlFlow<()>) -> T,
-) -> T {
+fn fitting<T>(arcs: usize, is_quiet: bool, fit: &mut dyn FnMut(Watch<'_>) -> T) -> T {
     let progress = Progress::new(3 * Options::default().max_iterations as u32, is_quiet);
     progress.say(0, &format!("fit of {arcs} arcs"));
     let found = fit(&mut |now| {
