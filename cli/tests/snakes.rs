@@ -212,7 +212,7 @@ fn a_snake_on_a_sphere_stays_on_it_and_files_agree() {
     assert!(frames.len() > 10, "{text}");
     let steps = frames.len() - 1;
     let found = positions(&folder, "sphere.evolve");
-    assert_eq!(found.len(), steps / 3 + 1 + usize::from(steps % 3 > 0));
+    assert_eq!(found.len(), steps / 3 + 1 + usize::from(!steps.is_multiple_of(3)));
     let triangles: Vec<[u32; 3]> = sphere.faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).collect();
     let closest = ClosestPoints::of_triangles(&sphere.points, &triangles).unwrap();
     for (k, arcs) in found.iter().enumerate() {
