@@ -91,5 +91,9 @@ struct SuperCanalSurfaces;
 struct RuledFreeForms;
 
 #[cfg(doctest)]
+#[doc = include_str!("../docs/snakes.md")]
+struct CircularArcSnakes;
+
+#[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

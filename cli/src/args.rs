@@ -3,6 +3,7 @@
 pub mod canal;
 pub mod links;
 pub mod ruled;
+pub mod snake;
 
 use std::path::PathBuf;
 
@@ -32,6 +33,7 @@ Examples:
   shapeop explore problem.json --handles moves.json   a drag, hard constraints met all the way
   shapeop canal                                  surfaces of planar circular quads from curves
   shapeop ruled roof.obj                         strips of straight lines for a surface curved like a saddle
+  shapeop snake                                  surfaces of many copies of a few circular arcs
   shapeop types                                  the constraints there are
 
 Files: OBJ, OFF and PLY with polygons of any size. The order of points and faces stays as it is.
@@ -160,6 +162,8 @@ of the farthest corner from the best-fit plane over the face's mean edge. Faces 
     Canal(canal::CanalArgs),
     /// Ruled free forms: strips of straight lines for a surface curved like a saddle; planks for the workshop
     Ruled(Box<ruled::RuledArgs>),
+    /// Circular arc snakes: surfaces swept by chains of arcs that keep their shapes; linkages that flex
+    Snake(snake::SnakeArgs),
     /// List the constraint types, or explain one
     #[command(after_help = "\
 Examples:

@@ -23,7 +23,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Cli, Command};
-use shapeop_cli::{colours, picture, raster};
+use shapeop_cli::{animation, colours, picture, raster};
 
 /// How a command ended that did not fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +64,7 @@ fn main() -> ExitCode {
         Command::Check(args) => commands::check::run(&args, is_quiet),
         Command::Canal(args) => commands::canal::run(&args.command, is_quiet),
         Command::Ruled(args) => commands::ruled::run(&args, is_quiet),
+        Command::Snake(args) => commands::snake::run(&args.command, is_quiet),
         Command::Types(args) => commands::types::run(&args, is_quiet),
     };
     match ending {

@@ -76,6 +76,19 @@ impl Output {
         Ok(name)
     }
 
+    /// Writes a frame that is no mesh.
+    pub fn text_frame(&mut self, number: usize, extension: &str, text: &str) -> Result<()> {
+        let path = self.path(&format!(".frame-{number:03}.{extension}"));
+        write_whole(&path, text.as_bytes())?;
+        self.frames.push(path);
+        Ok(())
+    }
+
+    /// Writes what is no text; `ending` follows the run's name.
+    pub fn bytes(&mut self, what: &'static str, ending: &str, bytes: &[u8]) -> Result<()> {
+        self.write(what, ending, bytes)
+    }
+
     pub fn mesh(&mut self, mesh: &Mesh, format: Format) -> Result<()> {
         self.write("mesh", &format!(".{format}"), &encode(mesh, format)?)
     }

@@ -125,15 +125,20 @@ struct Room {
 
 impl Picture<'_> {
     pub fn to_svg(&self) -> String {
-        self.seen_by(None)
+        self.seen_by(None, None)
     }
 
     /// The same from a given place: for pictures that are to be compared.
     pub fn to_svg_from(&self, camera: &Camera) -> String {
-        self.seen_by(Some(camera))
+        self.seen_by(Some(camera), None)
     }
 
-    fn seen_by(&self, camera: Option<&Camera>) -> String {
+    /// The same, with room for these points: for pictures of a motion, which is to be seen in one measure.
+    pub fn to_svg_within(&self, camera: &Camera, points: &[DVec3]) -> String {
+        self.seen_by(Some(camera), Some(points))
+    }
+
+    fn seen_by(&self, camera: Option<&Camera>, room: Option<&[DVec3]>) -> String {
         let targets = |panel: &Panel<'_>| panel.handles.iter().map(|[_, target]| *target).collect::<Vec<_>>();
         let curves = |panel: &Panel<'_>| [panel.overlay.curves.concat(), panel.overlay.thin_curves.concat()].concat();
         let strokes =
@@ -147,7 +152,7 @@ impl Picture<'_> {
             Camera::fitting(&all_points, &normals)
         };
         let camera = &camera.cloned().unwrap_or_else(fitting);
-        let common = Frame::of(&all_points, camera);
+        let common = Frame::of(room.unwrap_or(&all_points), camera);
         let size = common.size;
 
         let columns = match self.panels.len() {

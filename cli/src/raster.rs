@@ -45,6 +45,14 @@ pub fn small_png_at(svg: &str, scale: f32) -> Result<Vec<u8>> {
     pixels.encode_png().context("the picture could not be compressed")
 }
 
+/// The picture on white as rows of red, green and blue; with its width and height.
+pub fn rgb_at(svg: &str, scale: f32) -> Result<(u32, u32, Vec<u8>)> {
+    let pixels = rendered(svg, scale)?;
+    // All pixels are opaque.
+    let colours = pixels.data().chunks_exact(4).flat_map(|channels| [channels[0], channels[1], channels[2]]).collect();
+    Ok((pixels.width(), pixels.height(), colours))
+}
+
 fn rendered(svg: &str, scale: f32) -> Result<Pixmap> {
     let options = Options { fontdb: fonts(), font_family: "Noto Sans".to_owned(), ..Options::default() };
     let tree = Tree::from_str(svg, &options).context("the picture could not be laid out")?;

@@ -6,5 +6,6 @@ pub mod demo;
 pub mod explore;
 pub mod recipe;
 pub mod ruled;
+pub mod snake;
 pub mod solve;
 pub mod types;

@@ -16,6 +16,8 @@ mod strips;
 
 use anyhow::Result;
 
+pub use measures::counted;
+
 use crate::Ending;
 use crate::args::ruled::{RuledArgs, RuledCommand};
 
