@@ -1,0 +1,20 @@
+//! Figures of Bartoň et al. 2013 on surfaces of our own: what each shows, measured, and a picture.
+
+use std::path::Path;
+
+use anyhow::Result;
+
+use crate::group::Group;
+
+type Figure = fn(&Path) -> Result<Group>;
+
+const FIGURES: [(&str, Figure); 0] = [];
+
+/// Draws all figures, or the one of this name, and prints a line for each.
+pub fn draw(folder: &Path, name: Option<&str>) -> Result<()> {
+    std::fs::create_dir_all(folder)?;
+    for (_, figure) in FIGURES.iter().filter(|(own, _)| name.is_none_or(|name| name == *own)) {
+        println!("{}", figure(folder)?);
+    }
+    Ok(())
+}
