@@ -79,6 +79,7 @@ pub fn random_arcs(count: usize, seed: u64) -> (Vec<ArcShape>, Vec<f64>, Pose) {
     (arcs, torsions, pose)
 }
 
+/// An open snake of arcs that follow no rule.
 pub fn open_snake(count: usize, seed: u64) -> Result<Snake> {
     let (arcs, torsions, pose) = random_arcs(count, seed);
     Ok(Snake::from_arcs(&arcs, &torsions, &pose)?)
@@ -107,14 +108,22 @@ pub fn small_circle(count: usize, height: f64) -> Result<Snake> {
     Ok(Snake::new(flat.control().iter().map(|p| radius * p + height * DVec3::Z).collect(), false, None)?)
 }
 
-/// Control points on a helix of radius 1, equally spaced by the angle 0.3; the ends in the middles of edges, so that all arcs are
+/// Contact points on a helix of radius 1, equally spaced by the angle 0.3: the control points are on a helix outside, and arcs are
 /// congruent.
 pub fn screw(count: usize, slope: f64) -> Result<Snake> {
-    let at = |i: f64| DVec3::new((0.3 * i).cos(), (0.3 * i).sin(), 0.3 * slope * i);
+    let outside = 1.0 / 0.15_f64.cos();
+    let at = |i: f64| DVec3::new(outside * (0.3 * i).cos(), outside * (0.3 * i).sin(), 0.3 * slope * i);
     let mut control: Vec<DVec3> = (0..count + 2).map(|i| at(i as f64)).collect();
     control[0] = 0.5 * (at(0.0) + at(1.0));
     control[count + 1] = 0.5 * (at(count as f64) + at(count as f64 + 1.0));
     Ok(Snake::new(control, false, None)?)
+}
+
+/// Arcs of radius 1 that turn by π/3, with torsions that follow no rule.
+pub fn unit_arcs(count: usize, seed: u64) -> Result<Snake> {
+    let mut random = Random::new(seed);
+    let torsions: Vec<f64> = (1..count).map(|_| random.between(-1.5, 1.5)).collect();
+    linked(std::f64::consts::FRAC_PI_3, &torsions)
 }
 
 /// Linked arcs of radius 1 that turn by one angle, as the paper's linkage.

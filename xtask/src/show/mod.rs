@@ -98,6 +98,9 @@ impl Figures {
         let value = measure["value"].as_f64().with_context(|| format!("expected a number as value of {name}"))?;
         match (measure["least"].as_f64(), measure["most"].as_f64()) {
             (None, None) => self.plain(name, &number(value)),
+            (Some(least), Some(most)) if least == most => {
+                self.line(name, &number(value), &number(least), value == least);
+            }
             (least, most) => {
                 least.into_iter().for_each(|least| self.at_least(name, value, least));
                 most.into_iter().for_each(|most| self.at_most(name, value, most));

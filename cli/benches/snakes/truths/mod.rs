@@ -14,6 +14,7 @@ use anyhow::Result;
 use shapeop::error::Status;
 
 use crate::group::Group;
+pub use orders::Rates;
 
 type Truths = fn() -> Result<Group>;
 

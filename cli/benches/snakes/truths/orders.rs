@@ -11,20 +11,24 @@ use crate::group::Group;
 use crate::own::{largest, pairs};
 use crate::shapes::{Ball, screw, small_circle, torus};
 
-/// Velocities on a surface with the paper's weights, and for a step of time `h` the accelerations of equation (9) with targets at
+/// The paper's weights of offsets, and of accelerations along the surface.
+const PAPER: [f64; 2] = [0.1, 0.01];
+
+/// Velocities on a surface, and for a step of time `h` the accelerations of equation (9) with targets at
 /// the heights that control points have.
 pub struct Rates<'a> {
     snake: &'a Snake,
     surface: &'a dyn ReferenceSurface,
-    pub velocities: Vec<DVec3>,
+    velocities: Vec<DVec3>,
+    alpha: f64,
 }
 
 impl<'a> Rates<'a> {
-    pub fn new(snake: &'a Snake, surface: &'a dyn ReferenceSurface, weight: f64) -> Result<Self> {
+    pub fn new(snake: &'a Snake, surface: &'a dyn ReferenceSurface, [weight, alpha]: [f64; 2]) -> Result<Self> {
         let normals: Vec<DVec3> = snake.control().iter().map(|p| surface.nearest(*p).normal).collect();
         let mut wishes = tangential(&normals, 1.0);
         wishes.extend(offset(&sideways(snake, &normals)?, &vec![1.0; normals.len()], weight));
-        Ok(Self { snake, surface, velocities: velocity(snake, &[], &wishes)?.vectors })
+        Ok(Self { snake, surface, velocities: velocity(snake, &[], &wishes)?.vectors, alpha })
     }
 
     pub fn accelerations(&self, h: f64) -> Result<Vec<DVec3>> {
@@ -38,7 +42,7 @@ impl<'a> Rates<'a> {
             across.truncate(1);
             (across[0].terms[0].1, across[0].right) = (foot.normal, foot.normal.dot(wanted));
             wishes.extend(across);
-            wishes.extend(near_vector(i, wanted, 0.01));
+            wishes.extend(near_vector(i, wanted, self.alpha));
         }
         Ok(acceleration(self.snake, &self.velocities, &[], &wishes)?.vectors)
     }
@@ -62,7 +66,7 @@ pub fn group() -> Result<Group> {
     let torus = torus(2.0, 0.7)?;
     let snake = screw(6, 0.4)?;
     let snake = Snake::new(snake.control().iter().map(|p| 0.9 * *p + 1.9 * DVec3::X).collect(), false, None)?;
-    let rates = Rates::new(&snake, &torus, 0.1)?;
+    let rates = Rates::new(&snake, &torus, PAPER)?;
     for (is_second_order, name, order) in [(false, "first order", 2.0), (true, "second order", 3.0)] {
         for h in [0.04, 0.02] {
             let slope = (rates.error(h, is_second_order)? / rates.error(0.5 * h, is_second_order)?).log2();
@@ -73,7 +77,7 @@ pub fn group() -> Result<Group> {
     let ratio = rates.error(0.06, true)? / rates.error(0.02, false)?;
     group.at_most("error of second order at 0.06 over first order at 0.02", ratio, 1.0);
     let circle = small_circle(8, 0.6)?;
-    let rates = Rates::new(&circle, &Ball, 0.1)?;
+    let rates = Rates::new(&circle, &Ball, PAPER)?;
     let size =
         |h: f64| -> Result<f64> { Ok(rates.accelerations(h)?.iter().map(|a| a.length_squared()).sum::<f64>().sqrt()) };
     let ratio = size(0.01)? / size(0.001)?;

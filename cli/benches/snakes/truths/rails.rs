@@ -92,17 +92,16 @@ pub fn group() -> Result<Group> {
     // How far the point of the arc that met the rail leaves the plane of both tangents in a step: by the square of it.
     let space =
         Spline::through(&[contact, contact + DVec3::new(0.5, 0.2, 0.7), contact + DVec3::new(0.6, 0.5, 1.6)], false)?;
-    let out = |step: f64| -> Result<f64> {
+    let out = |step: f64| -> Result<[f64; 2]> {
         let rails = [Rail::Gliding { contact: 3, curve: &space, start: 0.0 }];
         let task = Task { rails: &rails, direction: Direction::Along(DVec3::new(0.3, 0.1, 1.0)), ..Task::new(&snake) };
         let found = run(&task, &Options { step, max_steps: 1, ..Options::default() })?;
         let normal = snake.arcs()[3].tangent(0.0).cross(space.tangent(0.0)).normalize();
         let way = found.last().snake.contacts()[3] - contact;
-        group.plain(&format!("gliding in space, step {step}: the contact's way"), way.length());
-        Ok(way.dot(normal).abs())
+        Ok([way.dot(normal).abs(), way.length()])
     };
-    let mut out = out;
-    let [coarse, fine] = [out(0.04)?, out(0.02)?];
-    group.at_least("gliding in space: order by which it leaves the plane", (coarse / fine).log2(), 1.8);
+    let [[coarse, way], [fine, _]] = [out(0.005)?, out(0.0025)?];
+    group.plain("gliding in space: out of the plane over the way", coarse / way);
+    group.between("gliding in space: order by which it leaves the plane", (coarse / fine).log2(), [1.8, 2.2]);
     Ok(group)
 }
