@@ -1,5 +1,9 @@
 //! Figures of Bartoň et al. 2013 on surfaces of our own: what each shows, measured, and a picture.
 
+mod curves;
+mod drawing;
+mod linkages;
+
 use std::path::Path;
 
 use anyhow::Result;
@@ -8,7 +12,15 @@ use crate::group::Group;
 
 type Figure = fn(&Path) -> Result<Group>;
 
-const FIGURES: [(&str, Figure); 0] = [];
+/// Each with the name of its picture.
+const FIGURES: [(&str, Figure); 6] = [
+    ("curvatures", curves::figure7),
+    ("rotation", curves::example2),
+    ("initialisation", curves::figure9),
+    ("cycle", linkages::figure16),
+    ("array", linkages::figure17),
+    ("singular", linkages::figure18),
+];
 
 /// Draws all figures, or the one of this name, and prints a line for each.
 pub fn draw(folder: &Path, name: Option<&str>) -> Result<()> {
