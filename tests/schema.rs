@@ -19,4 +19,6 @@ fn the_committed_schemas_are_current() {
     check(schemars::schema_for!(shapeop::geometry::ruled::file::StripsForm), "ruled.schema.json");
     check(schemars::schema_for!(shapeop::geometry::ruled::planks::Planks), "ruled-planks.schema.json");
     check(schemars::schema_for!(shapeop::geometry::ruled::report::Report), "ruled-report.schema.json");
+    check(schemars::schema_for!(shapeop::geometry::snakes::file::SnakeForm), "snake.schema.json");
+    check(schemars::schema_for!(shapeop::geometry::snakes::arc_list::ArcListForm), "snake-arcs.schema.json");
 }

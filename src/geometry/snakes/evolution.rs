@@ -228,6 +228,16 @@ impl Evolution {
         // The start is always there.
         &self.frames[self.frames.len() - 1]
     }
+
+    /// The control points of all positions, as [`swept_grid`](super::sweep::swept_grid) takes them.
+    pub fn positions(&self) -> Vec<Vec<DVec3>> {
+        self.frames.iter().map(|frame| frame.snake.control().to_vec()).collect()
+    }
+
+    /// The times of all positions.
+    pub fn times(&self) -> Vec<f64> {
+        self.frames.iter().map(|frame| frame.time).collect()
+    }
 }
 
 /// Where an evolution is.

@@ -18,6 +18,10 @@
 //! o = p + (r / sin θ) ((p₋ − p)/a + (p₊ − p)/b),   n = (p − p₋) × (p₊ − p) / (a b sin θ).
 //! ```
 
+mod closed;
+
+pub use closed::fit_closed;
+
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
@@ -47,7 +51,7 @@ const LEAST_ANGLE: f64 = 1e-6;
 /// How a snake is fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Whether all arcs have one radius, not only one length.
+    /// Around a closed curve this and the curvature do not count. Whether all arcs have one radius, not only one length.
     pub is_congruent: bool,
     /// The curvature of all arcs, if it is known, above 0, in 1/model units.
     pub curvature: Option<f64>,
@@ -95,7 +99,7 @@ pub fn fit(
     progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<FittedSnake> {
     check(arc_count, options)?;
-    let samples = Samples::new(points)?;
+    let samples = Samples::new(points, false)?;
     let shapes = shapes(&samples, arc_count, options)?;
     let snake = start(&samples, &shapes)?;
     let mut problem = Fit::new(&snake, &samples, options.nearness);
@@ -117,10 +121,10 @@ pub fn fit(
     Ok(FittedSnake { snake, deviation, residual, iterations, stop })
 }
 
-/// The snake of `arc_count` arcs along an open curve, as [`fit`] to points evenly spaced on it, 32 to an arc.
+/// The snake of `arc_count` arcs along a curve, as [`fit`] or [`fit_closed`] to points evenly spaced on it, 32 to an arc.
 ///
 /// # Errors
-/// As [`fit`]; a closed curve, or one without a length (`curve`).
+/// As [`fit`] or [`fit_closed`]; a curve without a length (`curve`).
 pub fn fit_curve(
     curve: &dyn Curve,
     arc_count: usize,
@@ -128,12 +132,14 @@ pub fn fit_curve(
     progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<FittedSnake> {
     check(arc_count, options)?;
-    if curve.is_closed() {
-        return Err(Error::new(Status::InvalidValue, "expected an open curve, found a closed one").at("curve"));
-    }
-    let parameters = resample(curve, PER_ARC * arc_count + 1, Spacing::ArcLength).map_err(|error| error.at("curve"))?;
+    let count = PER_ARC * arc_count + usize::from(!curve.is_closed());
+    let parameters = resample(curve, count, Spacing::ArcLength).map_err(|error| error.at("curve"))?;
     let points: Vec<DVec3> = parameters.into_iter().map(|parameter| curve.point(parameter)).collect();
-    fit(&points, arc_count, options, progress)
+    if curve.is_closed() {
+        fit_closed(&points, arc_count, options, progress)
+    } else {
+        fit(&points, arc_count, options, progress)
+    }
 }
 
 /// The largest distance of the points from the nearest arc of a snake.
@@ -161,7 +167,7 @@ fn search(options: &Options) -> gauss_newton::Options {
     gauss_newton::Options { relative_decrease: 1e-9, max_iterations: options.max_iterations, ..Default::default() }
 }
 
-fn shapes(samples: &Samples<'_>, arc_count: usize, options: &Options) -> Result<Vec<ArcShape>> {
+fn shapes(samples: &Samples, arc_count: usize, options: &Options) -> Result<Vec<ArcShape>> {
     let length = samples.length() / arc_count as f64;
     let whole = samples.mean_curvature(0.0, samples.length());
     let shape = |j: usize| {
@@ -184,7 +190,7 @@ fn shapes(samples: &Samples<'_>, arc_count: usize, options: &Options) -> Result<
 }
 
 /// A snake near the curve that does not keep its distances yet.
-fn start(samples: &Samples<'_>, shapes: &[ArcShape]) -> Result<Snake> {
+fn start(samples: &Samples, shapes: &[ArcShape]) -> Result<Snake> {
     let length = shapes[0].length;
     let contact = |j: usize| samples.point(j as f64 * length);
     let tangent = |j: usize| samples.tangent(j as f64 * length);
@@ -219,7 +225,7 @@ struct Fit {
 }
 
 impl Fit {
-    fn new(snake: &Snake, samples: &Samples<'_>, nearness: f64) -> Self {
+    fn new(snake: &Snake, samples: &Samples, nearness: f64) -> Self {
         let distances = snake.distances();
         let arc = |(j, shape): (usize, &ArcShape)| {
             // Edges come first among the distances.

@@ -15,6 +15,7 @@
 //! dimension `N + 5`, or `N` if the snake is closed with at least 6 arcs; an open one that has to stay on a surface keeps 3 freedoms.
 
 mod arc;
+pub mod arc_list;
 mod congruence;
 pub mod covering;
 pub mod curvature_curve;
@@ -23,6 +24,7 @@ pub mod cycle;
 mod drive;
 pub mod evolution;
 mod face_patch;
+pub mod file;
 pub mod fit;
 pub mod freedoms;
 pub mod functionals;

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
 
 use super::Arc;
 use crate::error::{Error, Result, Status, finite};
@@ -16,11 +17,13 @@ const UNEQUAL: f64 = 1e-9;
 const LEAST_ANGLE: f64 = 1e-6;
 
 /// What an arc keeps: its radius and length.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
 pub struct ArcShape {
-    /// The radius.
+    /// The radius, above 0.
     pub radius: f64,
-    /// The arc length.
+    /// The arc length, above 0 and below π times the radius.
     pub length: f64,
 }
 
@@ -128,9 +131,7 @@ impl Snake {
         if arcs.is_empty() {
             return Err(Error::new(Status::InvalidArgumentLength, "expected at least 1, found none").at("arcs"));
         }
-        for (j, arc) in arcs.iter().enumerate() {
-            arc.check().map_err(|reason| Error::new(Status::InvalidValue, reason).at(format!("arcs[{j}]")))?;
-        }
+        check_arcs(arcs)?;
         if torsions.len() + 1 != arcs.len() {
             let reason = format!("expected {}, one between two arcs, found {}", arcs.len() - 1, torsions.len());
             return Err(Error::new(Status::InvalidArgumentLength, reason).at("torsions"));
@@ -158,6 +159,35 @@ impl Snake {
         control.push(at);
         check_finite("arcs", &control)?;
         Ok(Self { control, shapes: arcs.to_vec(), is_closed: false })
+    }
+
+    /// The snake of these arcs with these control points: one for each arc of a closed snake, of an open one two more. It is what
+    /// [`Snake::new`] finds, but the arcs are those given to the last bit, and an even number around a closed snake is no question.
+    ///
+    /// # Errors
+    /// Too few arcs, or one that is none (`arcs`, `arcs[j]`); another number of control points, or a coordinate that is not finite
+    /// (`control`, `control[i]`); control points that do not keep the distances of the arcs to 1e-9 of their extent (`control`).
+    pub fn with_arcs(control: Vec<DVec3>, arcs: Vec<ArcShape>, is_closed: bool) -> Result<Self> {
+        let least = if is_closed { 3 } else { 1 };
+        if arcs.len() < least {
+            let reason = format!("expected at least {least}, found {}", arcs.len());
+            return Err(Error::new(Status::InvalidArgumentLength, reason).at("arcs"));
+        }
+        check_arcs(&arcs)?;
+        let expected = if is_closed { arcs.len() } else { arcs.len() + 2 };
+        if control.len() != expected {
+            let reason = format!("expected {expected} for {} arcs, found {}", arcs.len(), control.len());
+            return Err(Error::new(Status::InvalidArgumentLength, reason).at("control"));
+        }
+        check_finite("control", &control)?;
+        let snake = Self { control, shapes: arcs, is_closed };
+        let residual = snake.residual();
+        if !(residual <= UNEQUAL * snake.size()) {
+            let reason =
+                format!("expected points at the distances that the arcs have, found one that is off by {residual}");
+            return Err(Error::new(Status::InvalidValue, reason).at("control"));
+        }
+        Ok(snake)
     }
 
     /// The same arcs with other control points; they need not keep the distances.
@@ -317,6 +347,13 @@ impl Snake {
     }
 }
 
+fn check_arcs(arcs: &[ArcShape]) -> Result<()> {
+    for (j, arc) in arcs.iter().enumerate() {
+        arc.check().map_err(|reason| Error::new(Status::InvalidValue, reason).at(format!("arcs[{j}]")))?;
+    }
+    Ok(())
+}
+
 /// The diagonal of the box around points.
 fn size(points: &[DVec3]) -> f64 {
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
@@ -375,13 +412,13 @@ fn positive(tangent: f64, i: usize, size: f64) -> Result<f64> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
     use crate::geometry::random::Random;
 
-    pub(crate) fn random_snake(count: usize, seed: u64) -> (Vec<ArcShape>, Vec<f64>, Pose, Snake) {
+    pub fn random_snake(count: usize, seed: u64) -> (Vec<ArcShape>, Vec<f64>, Pose, Snake) {
         let mut random = Random(seed);
         let arc = |random: &mut Random| {
             let radius = random.between(0.5, 2.0);

@@ -31,13 +31,16 @@ pub fn swept_grid(snake: &Snake, frames: &[Vec<DVec3>], per_arc: usize, comes_ba
     }
     let mut points = Vec::with_capacity(columns * frames.len());
     for (i, frame) in frames.iter().enumerate() {
-        let moved = snake.moved(frame.clone()).map_err(|error| {
-            let place = format!("frames[{i}]{}", error.place().strip_prefix("control").unwrap_or_default());
-            error.with_place(place)
-        })?;
+        let moved = snake.moved(frame.clone()).map_err(|error| of_frame(i, &error))?;
         points.extend(moved.sample(per_arc));
     }
     Grid::new(points, frames.len(), columns, [comes_back, snake.is_closed()])
+}
+
+/// An error in the control points of a position.
+pub(super) fn of_frame(i: usize, error: &Error) -> Error {
+    let place = format!("frames[{i}]{}", error.place().strip_prefix("control").unwrap_or_default());
+    error.clone().with_place(place)
 }
 
 pub(super) fn check_intervals(name: &str, count: usize) -> Result<()> {
@@ -56,6 +59,14 @@ pub struct ArcKind {
     pub count: usize,
     /// Which ones, by their places in the list given.
     pub arcs: Vec<usize>,
+}
+
+impl ArcKind {
+    pub(super) fn of(arcs: &[ArcShape], members: Vec<usize>) -> Self {
+        let mean = |of: fn(&ArcShape) -> f64| members.iter().map(|&i| of(&arcs[i])).sum::<f64>() / members.len() as f64;
+        let shape = ArcShape { radius: mean(|arc| arc.radius), length: mean(|arc| arc.length) };
+        Self { shape, count: members.len(), arcs: members }
+    }
 }
 
 /// The different arcs among `arcs`, as of one snake ([`Snake::shapes`]) or of many, in the order in which each comes first. Arcs
@@ -88,12 +99,7 @@ pub fn arc_kinds(arcs: &[ArcShape], tolerance: f64) -> Result<Vec<ArcKind>> {
             None => kinds.push(vec![i]),
         }
     }
-    let kind = |members: Vec<usize>| {
-        let mean = |of: fn(&ArcShape) -> f64| members.iter().map(|&i| of(&arcs[i])).sum::<f64>() / members.len() as f64;
-        let shape = ArcShape { radius: mean(|arc| arc.radius), length: mean(|arc| arc.length) };
-        ArcKind { shape, count: members.len(), arcs: members }
-    };
-    Ok(kinds.into_iter().map(kind).collect())
+    Ok(kinds.into_iter().map(|members| ArcKind::of(arcs, members)).collect())
 }
 
 /// Refuses a direction of a sample that is none.
