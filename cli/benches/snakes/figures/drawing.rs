@@ -1,7 +1,8 @@
 //! How snakes, surfaces and coverings are drawn, and what is told of every covering.
 
 use anyhow::Result;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use shapeop::geometry::snakes::covering::pipe;
 use shapeop::geometry::snakes::evolution::{Evolution, Options, Stop, Task};
 use shapeop::geometry::snakes::sweep::{arc_kinds, swept_grid};
 use shapeop::geometry::snakes::{ArcShape, Snake};
@@ -92,6 +93,23 @@ pub fn both_ways(task: &Task<'_>, options: &Options, step: usize) -> Result<(Vec
     snakes.reverse();
     snakes.extend(every(&there, step).into_iter().skip(1));
     Ok((snakes, stops))
+}
+
+/// A snake turned so that its ends are as high as each other, along the x axis, and its middle above them.
+pub fn upright(snake: &Snake) -> Result<Snake> {
+    let contacts = snake.contacts();
+    let (first, last) = (contacts[0], contacts[contacts.len() - 1]);
+    let along = (last - first).normalize();
+    let middle = contacts.iter().sum::<DVec3>() / contacts.len() as f64;
+    let up = (middle - first).reject_from_normalized(along).normalize();
+    let turn = DMat3::from_cols(along, up.cross(along), up).transpose();
+    Ok(snake.moved(snake.control().iter().map(|p| turn * (*p - first.midpoint(last))).collect())?)
+}
+
+/// The arcs of a snake as a pipe, in turn in two colours.
+pub fn piped(view: View, snake: &Snake, radius: f64, colours: [Rgb; 2]) -> Result<View> {
+    let grid = pipe(snake, radius, PER_ARC, 10)?;
+    Ok(quads(view, &grid, &|i, _| colours[(i / PER_ARC) % 2]))
 }
 
 /// What a covering comes to.

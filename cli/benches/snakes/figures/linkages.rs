@@ -5,15 +5,14 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use glam::{DMat3, DVec3};
-use shapeop::geometry::snakes::covering::pipe;
+use glam::DVec3;
 use shapeop::geometry::snakes::cycle::{End, Motion, Options, cycle};
 use shapeop::geometry::snakes::sweep::swept_grid;
 use shapeop::geometry::snakes::{Linkage, Snake};
 use shapeop_cli::colours::Rgb;
 use shapeop_cli::scene::{BLUE, INK, RED, Scene, View};
 
-use super::drawing::{ARCS, BLUES, PER_ARC, SHEET, THIN, YELLOW, framed, line, quads};
+use super::drawing::{ARCS, BLUES, PER_ARC, SHEET, THIN, YELLOW, framed, line, piped, quads, upright};
 use crate::group::Group;
 use crate::own::{largest, shape_error, stretch};
 use crate::shapes::{TORSIONS, linked};
@@ -22,17 +21,6 @@ const GREEN: Rgb = [0.16, 0.52, 0.30];
 const PURPLE: Rgb = [0.48, 0.26, 0.62];
 const GREENS: [Rgb; 2] = [[0.55, 0.78, 0.56], [0.93, 0.97, 0.93]];
 
-/// A linkage whose ends are as high as each other and whose middle is above them.
-fn upright(snake: &Snake) -> Result<Snake> {
-    let contacts = snake.contacts();
-    let (first, last) = (contacts[0], contacts[contacts.len() - 1]);
-    let along = (last - first).normalize();
-    let middle = contacts.iter().sum::<DVec3>() / contacts.len() as f64;
-    let up = (middle - first).reject_from_normalized(along).normalize();
-    let turn = DMat3::from_cols(along, up.cross(along), up).transpose();
-    Ok(snake.moved(snake.control().iter().map(|p| turn * (*p - first.midpoint(last))).collect())?)
-}
-
 fn moved(snake: Snake, step_rad: f64) -> Result<Motion> {
     let options = Options { step_rad, ..Options::default() };
     let motion = cycle(&Linkage::new(snake)?, &options, &mut |_| ControlFlow::Continue(()))?;
@@ -40,12 +28,6 @@ fn moved(snake: Snake, step_rad: f64) -> Result<Motion> {
         bail!("the linkage does not come back: {:?}", motion.end);
     }
     Ok(motion)
-}
-
-/// The arcs of a snake as a pipe, in turn in two colours.
-pub fn piped(view: View, snake: &Snake, radius: f64, colours: [Rgb; 2]) -> Result<View> {
-    let grid = pipe(snake, radius, PER_ARC, 10)?;
-    Ok(quads(view, &grid, &|i, _| colours[(i / PER_ARC) % 2]))
 }
 
 /// The axes that the ends of a linkage are held by.
