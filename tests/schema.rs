@@ -21,4 +21,5 @@ fn the_committed_schemas_are_current() {
     check(schemars::schema_for!(shapeop::geometry::ruled::report::Report), "ruled-report.schema.json");
     check(schemars::schema_for!(shapeop::geometry::snakes::file::SnakeForm), "snake.schema.json");
     check(schemars::schema_for!(shapeop::geometry::snakes::arc_list::ArcListForm), "snake-arcs.schema.json");
+    check(schemars::schema_for!(shapeop::geometry::snakes::report::Report), "snake-report.schema.json");
 }

@@ -80,13 +80,18 @@ impl BandedLu {
     pub fn solve(&self, right: &mut [f64]) {
         for k in 0..self.dimension {
             right.swap(k, self.exchanges[k] as usize);
-            for i in k + 1..=self.last_row(k) {
-                right[i] -= self.entries[self.place(i, k)] * right[k];
+            let (known, rest) = right[..=self.last_row(k)].split_at_mut(k + 1);
+            if let Some(last) = rest.len().checked_sub(1) {
+                // One row on and one column back.
+                let column = &self.entries[self.place(k + 1, k)..=self.place(k + 1 + last, k)];
+                let factors = column.iter().step_by((self.width - 1).max(1));
+                rest.iter_mut().zip(factors).for_each(|(entry, factor)| *entry -= factor * known[k]);
             }
         }
         for k in (0..self.dimension).rev() {
             let row = self.place(k, k);
-            let known: f64 = (k + 1..=self.last_column(k)).map(|j| self.entries[row + j - k] * right[j]).sum();
+            let after = &right[k + 1..=self.last_column(k)];
+            let known: f64 = self.entries[row + 1..].iter().zip(after).map(|(entry, x)| entry * x).sum();
             right[k] = (right[k] - known) / self.entries[row];
         }
     }

@@ -109,7 +109,7 @@ impl ClosestPoints {
                     }
                     RTreeNode::Parent(parent) => {
                         // Squares of tiny distances vanish: then look rather than miss.
-                        let squared = parent.envelope().distance_2(&point.to_array());
+                        let squared = squared_distance(&parent.envelope(), point);
                         nodes.extend((squared <= distance * distance).then_some(parent));
                     }
                 }
@@ -124,6 +124,12 @@ impl ClosestPoints {
         search(self.tree.root(), point, &mut best);
         best
     }
+}
+
+/// The squared distance from a point to a box.
+fn squared_distance(envelope: &AABB<[f64; 3]>, point: DVec3) -> f64 {
+    let [low, high] = [envelope.lower(), envelope.upper()].map(DVec3::from_array);
+    point.distance_squared(point.clamp(low, high))
 }
 
 fn check_points(points: &[DVec3]) -> Result<()> {
@@ -145,7 +151,7 @@ fn search(node: &ParentNode<Piece>, point: DVec3, best: &mut Best) {
         match child {
             RTreeNode::Leaf(piece) => best.take(piece, point),
             RTreeNode::Parent(parent) => match order.get_mut(i) {
-                Some(place) => *place = (parent.envelope().distance_2(&point.to_array()), i),
+                Some(place) => *place = (squared_distance(&parent.envelope(), point), i),
                 None => search(parent, point, best),
             },
         }

@@ -6,6 +6,7 @@
 mod closest;
 pub mod curvature;
 pub mod curve;
+pub mod deviation;
 pub mod file;
 pub mod fit;
 pub mod grid;

@@ -7,6 +7,7 @@ mod cover;
 mod features;
 mod joints;
 
+pub use crate::mesh::deviation::Deviation;
 pub use features::feature_sizes;
 pub use joints::{JointReport, consecutive};
 
@@ -53,21 +54,6 @@ impl Default for ReportOptions {
             trim: TrimOptions::default(),
         }
     }
-}
-
-/// Distances of samples from another shape, in model units.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Deviation {
-    /// The number of samples; if 0, all else is 0 too.
-    pub count: usize,
-    /// The greatest.
-    pub max: f64,
-    /// The sample that has it.
-    pub at: [f64; 3],
-    /// The root of the mean square, each sample weighted by the area it stands for.
-    pub rms: f64,
 }
 
 /// Widths of a strip: across its middle line, in model units.
@@ -209,7 +195,7 @@ fn summed_up(
     options: &ReportOptions,
 ) -> Report {
     let strip_report = |(sums, (strip, trimmed)): (&StripSums, (&Strip, &Trimmed))| StripReport {
-        deviation: deviation(&sums.distances),
+        deviation: Deviation::of(&sums.distances),
         area: strip.area(),
         trimmed_area: trimmed.area(),
         widths: widths(&sums.widths),
@@ -227,8 +213,8 @@ fn summed_up(
     };
     let all_widths: Vec<(f64, f64)> = sums.iter().flat_map(|sums| sums.widths.iter().copied()).collect();
     Report {
-        strips_to_reference: deviation(&all(|sums| &sums.distances)),
-        reference_to_strips: deviation(distances),
+        strips_to_reference: Deviation::of(&all(|sums| &sums.distances)),
+        reference_to_strips: Deviation::of(distances),
         reference_area,
         trimmed_area,
         coverage: (cover.covered / reference_area).min(1.0),
@@ -343,20 +329,6 @@ impl StripSums {
         }
         sums
     }
-}
-
-fn deviation(distances: &[(DVec3, f64, f64)]) -> Deviation {
-    let mut found = Deviation { count: distances.len(), ..Deviation::default() };
-    let (mut squares, mut areas) = (0.0, 0.0);
-    for (i, &(point, distance, area)) in distances.iter().enumerate() {
-        if i == 0 || distance > found.max {
-            (found.max, found.at) = (distance, point.to_array());
-        }
-        squares += area * distance * distance;
-        areas += area;
-    }
-    found.rms = if areas > 0.0 { (squares / areas).sqrt() } else { found.max };
-    found
 }
 
 fn widths(widths: &[(f64, f64)]) -> Widths {

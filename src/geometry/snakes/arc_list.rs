@@ -49,6 +49,12 @@ pub struct KindForm {
     pub count: usize,
 }
 
+impl KindForm {
+    pub(super) fn of(kind: &ArcKind, positions: usize) -> Self {
+        Self { radius: kind.shape.radius, length: kind.shape.length, count: kind.count * positions }
+    }
+}
+
 /// A position.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -154,11 +160,6 @@ impl ArcList {
     }
 
     fn form(&self) -> ArcListForm {
-        let kind = |kind: &ArcKind| KindForm {
-            radius: kind.shape.radius,
-            length: kind.shape.length,
-            count: kind.count * self.snakes.len(),
-        };
         let arc = |(j, arc): (usize, Arc)| ArcForm {
             kind: self.kind_of[j],
             center: arc.circle.center.to_array(),
@@ -175,7 +176,7 @@ impl ArcList {
         ArcListForm {
             version: VERSION,
             closed: self.snakes[0].is_closed(),
-            kinds: self.kinds.iter().map(kind).collect(),
+            kinds: self.kinds.iter().map(|kind| KindForm::of(kind, self.snakes.len())).collect(),
             frames: self.snakes.iter().zip(&self.times).map(frame).collect(),
         }
     }

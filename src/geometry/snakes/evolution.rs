@@ -9,6 +9,7 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 
 use super::Snake;
+use super::feet::Feet;
 use super::functionals::Row;
 use super::motion::Motion;
 use super::projection;
@@ -78,10 +79,10 @@ pub struct Weights {
 }
 
 impl Default for Weights {
-    /// Those of the paper's surfaces, 1 and 0.1. A snake of many short arcs can bend off a surface by little: where it is to keep
-    /// to a smooth surface exactly, an offset weight of 1e-6 or below leaves it no more than the three freedoms that it has there.
+    /// 1, and 0.001 for speeds. The paper has 0.1, with which a snake of many short arcs rather bends off the surface than that its
+    /// speeds differ from those asked for; the projection takes that back, most of the step. Below 0.001 nothing changes.
     fn default() -> Self {
-        Self { tangential: 1.0, offset: 0.1, rotation: 0.0, orthogonal: 0.0 }
+        Self { tangential: 1.0, offset: 1e-3, rotation: 0.0, orthogonal: 0.0 }
     }
 }
 
@@ -107,7 +108,8 @@ pub struct Options {
     pub keeps_torsions: bool,
     /// Whether to stop when the snake is back where it started.
     pub stops_at_cycle: bool,
-    /// How steps are projected; to the nearest position only without a surface.
+    /// How steps are projected; to the nearest position only without a surface. Heights count 0.01 by default: an open snake meets
+    /// them all the same, and a closed one, which few surfaces leave any way to go, leaves the surface by little as it goes.
     pub projection: projection::Options,
 }
 
@@ -123,7 +125,7 @@ impl Default for Options {
             alpha: 0.01,
             keeps_torsions: false,
             stops_at_cycle: true,
-            projection: projection::Options::default(),
+            projection: projection::Options { surface_weight: 0.01, ..projection::Options::default() },
         }
     }
 }
@@ -255,7 +257,8 @@ pub struct Progress<'a> {
 /// Options out of range (`options.FIELD`); not one speed for all or for each control point, or one that is not finite (`speeds`,
 /// `speeds[i]`); sideways without a surface, or no direction (`direction`); a point that does not exist or is given twice
 /// (`fixed[k]`, `rails[k].point`); a rail that does not begin on the snake (`rails[k]`); wishes that are none (`wishes[k]`); a
-/// closed snake of fewer than 6 arcs, which is rigid (`snake`). Status `Degenerate`: a gliding rail along the snake (`rails[k]`).
+/// closed snake of fewer than 6 arcs, which is rigid (`snake`); nothing that says how it is to move: weights that are all 0, without
+/// wishes and rails (`options.weights`). Status `Degenerate`: a gliding rail along the snake (`rails[k]`).
 pub fn evolve(
     task: &Task<'_>,
     options: &Options,
@@ -263,6 +266,8 @@ pub fn evolve(
 ) -> Result<Evolution> {
     check(task, options)?;
     let on_rails = rails::start(task.snake, task.rails)?;
+    let feet = task.surface.map(Feet::new);
+    let task = &Task { surface: feet.as_ref().map(|feet| feet as &dyn ReferenceSurface), ..*task };
     let motion = Motion::new(task, options, &on_rails);
     let mut run = Run::new(motion, on_rails);
     let stop = run.run(progress)?;
@@ -271,6 +276,12 @@ pub fn evolve(
 
 fn check(task: &Task<'_>, options: &Options) -> Result<()> {
     options.check()?;
+    let Weights { tangential, offset, rotation, orthogonal } = options.weights;
+    let is_wished = [tangential, offset, rotation, orthogonal].iter().any(|weight| *weight > 0.0);
+    if !is_wished && task.wishes.is_empty() && task.rails.is_empty() {
+        let reason = "expected a weight above 0, found 0 for all, and neither wishes nor rails";
+        return Err(Error::new(Status::InvalidValue, reason).at("options.weights"));
+    }
     let count = task.snake.control().len();
     if task.snake.is_closed() && count < 6 {
         let reason = format!("expected at least 6 arcs of a closed snake, which is rigid with fewer, found {count}");

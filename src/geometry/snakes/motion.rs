@@ -223,10 +223,11 @@ impl<'a> Motion<'a> {
         admissible(snake, Kept { distances: &own, rights: &right[..own.len()] }, conditions, wishes)
     }
 
-    /// The accelerations for a step of time `h` (Bartoň et al. 2013, equation 9), whose targets are the feet of where the
-    /// velocities lead to. As control points are off the surface, accelerations towards the feet themselves grow like `h⁻²`; we
-    /// take points above the feet, at the heights that the control points have and that the velocities change at their rates: so
-    /// accelerations make up for curvature, and are bounded. What is along the surface is to be small.
+    /// The accelerations for a step of time `h` (Bartoň et al. 2013, equation 9), with targets beside where the velocities lead to. As
+    /// control points are off the surface, accelerations towards its feet themselves would grow like `h⁻²`; we take points at the
+    /// heights `η` that control points have and that velocities change at their rates. By differences along the velocity that is an
+    /// acceleration of `−η″` along the normal: on a mesh, whose normals are blended, `n · v` is not quite the rate of the height, and
+    /// accelerations from it would grow like `h⁻¹`. What is along the surface is to be small.
     pub fn acceleration(&self, state: &State, rates: &Rates, h: f64) -> std::result::Result<Vec<DVec3>, Failure> {
         let snake = &state.snake;
         let velocities = &rates.velocity.vectors;
@@ -265,14 +266,12 @@ impl<'a> Motion<'a> {
         for (i, (p, v)) in snake.control().iter().zip(velocities).enumerate() {
             let mut wanted = DVec3::ZERO;
             if let Some(surface) = self.task.surface {
-                let now = surface.nearest(*p);
-                let kept = now.normal.dot(*p - now.point + h * *v);
-                let predicted = *p + h * *v;
-                let foot = surface.nearest(predicted);
-                let normal = foot.normal;
-                wanted = 2.0 / (h * h) * (foot.point + kept * normal - predicted);
-                let row = Row { terms: vec![(i as u32, normal)], right: normal.dot(wanted), weight: 1.0 };
-                wishes.push(row);
+                let [before, now] = [*p - h * *v, *p].map(|point| height(surface, point));
+                let foot = surface.nearest(*p + h * *v);
+                let after = foot.normal.dot(*p + h * *v - foot.point);
+                let bend = (2.0 * now - before - after) / (h * h);
+                wanted = bend * foot.normal;
+                wishes.push(Row { terms: vec![(i as u32, foot.normal)], right: bend, weight: 1.0 });
             }
             wishes.extend(near_vector(i, wanted, self.options.alpha));
         }

@@ -37,7 +37,8 @@ pub struct Options {
     /// `µ`, what the squared way counts against squared errors of distances; above 0. Higher values than the default leave errors
     /// that Newton's method has to take elsewhere.
     pub mu: f64,
-    /// What squared errors of heights count against squared errors of distances, 0 or more.
+    /// What squared errors of heights count against squared errors of distances, 0 or more. Above 0 heights are met to round-off
+    /// where that is possible, whatever it is.
     pub surface_weight: f64,
     /// Whether the nearest position is found rather than one that is near. Not with a surface.
     pub is_exact: bool,

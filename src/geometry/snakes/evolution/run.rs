@@ -17,8 +17,8 @@ const TAKEN_BACK: f64 = 0.1;
 /// unless halving it makes that no smaller than this part, as for velocities that do not lead along the surface,
 const NO_GAIN: f64 = 0.75;
 
-/// and it is not more than this part.
-const MOST_TAKEN_BACK: f64 = 0.5;
+/// and it is not more than this part: more is no way to go.
+const MOST_TAKEN_BACK: f64 = 0.9;
 
 /// After a step that was not halved the next one may be longer by this factor, up to the step asked for.
 const GROWTH: f64 = 1.5;

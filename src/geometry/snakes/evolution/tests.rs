@@ -215,11 +215,15 @@ fn a_ring_climbs_a_cylinder_and_cannot_climb_a_cone() {
     // With heights kept the projection takes all back; without, the ring leaves the cone.
     let speeds = [-1.0];
     for speeds in [&speeds[..], &[1.0]] {
-        let kept = run(&Task { speeds, ..on(&ring, &cone) }, &Options { max_deviation: 0.05, ..Options::default() });
+        let go = |surface_weight: f64| {
+            let projection = projection::Options { surface_weight, ..projection::Options::default() };
+            // The paper's weight, with which it goes as fast as it is told to.
+            let weights = Weights { offset: 0.1, ..Weights::default() };
+            let options = Options { max_deviation: 0.05, projection, weights, ..Options::default() };
+            run(&Task { speeds, ..on(&ring, &cone) }, &options)
+        };
+        let (kept, left) = (go(1.0), go(0.0));
         assert!(matches!(kept.stop, Stop::Stalled | Stop::Deviation(_)), "{:?}", kept.stop);
-        let projection = projection::Options { surface_weight: 0.0, ..projection::Options::default() };
-        let options = Options { max_deviation: 0.05, projection, ..Options::default() };
-        let left = run(&Task { speeds, ..on(&ring, &cone) }, &options);
         assert!(matches!(left.stop, Stop::Deviation(by) if by > 0.05) && left.frames.len() < 20, "{:?}", left.stop);
         assert!(left.frames.iter().all(|frame| frame.deviation <= 0.05 && frame.snake.residual() < 1e-12));
     }
@@ -277,6 +281,8 @@ fn what_cannot_move_is_refused() {
         refused(&task, &Options { weights: Weights { offset: -1.0, ..plain.weights }, ..plain }),
         "options.weights.offset"
     );
+    let none = Weights { tangential: 0.0, offset: 0.0, ..plain.weights };
+    assert_eq!(refused(&task, &Options { weights: none, ..plain }), "options.weights");
     let mu = projection::Options { mu: 0.0, ..plain.projection };
     assert_eq!(refused(&task, &Options { projection: mu, ..plain }), "options.projection.mu");
     let ring = regular(5);
@@ -321,4 +327,5 @@ fn meshes_guide_as_the_surfaces_that_they_are_of() {
     assert!(risen > 1.3, "{risen}");
 }
 
+mod long_tests;
 mod rail_tests;
