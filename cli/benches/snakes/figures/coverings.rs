@@ -4,11 +4,13 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use super::drawing::knob;
 use anyhow::Result;
 use glam::DVec3;
 use shapeop::geometry::snakes::covering::lamella;
 use shapeop::geometry::snakes::evolution::{Options, Stop, Weights};
 use shapeop::geometry::snakes::fit::{self, fit, fit_closed};
+use shapeop::geometry::snakes::projection;
 use shapeop::mesh::patterns::parametric_surface;
 use shapeop::mesh::reference::ReferenceMesh;
 use shapeop::mesh::{Grid, ReferenceSurface, TriangleMesh};
@@ -23,7 +25,10 @@ use crate::shapes::{on, run};
 
 /// A hull: a barrel whose half width and height change along it.
 fn hull(u: f64, v: f64) -> DVec3 {
-    let (wide, high) = (1.0 + 0.14 * (1.1 * u).sin(), 0.85 + 0.12 * (1.3 * u + 0.4).cos());
+    let (wide, high) = (
+        1.0 + super::drawing::knob("HW", 0.07) * (1.1 * u).sin(),
+        0.85 + super::drawing::knob("HH", 0.06) * (1.3 * u + 0.4).cos(),
+    );
     DVec3::new(u, wide * v.sin(), high * v.cos())
 }
 
@@ -33,15 +38,23 @@ pub fn figure2(folder: &Path) -> Result<Group> {
         "Eight arcs fitted to a section of the hull move along it both ways; each position is a pipe, or a lamella that stands on\n\
          the hull.",
     );
-    let mesh = parametric_surface(121, 81, [-1.9, 1.9], [-1.35, 1.35], hull)?;
+    let mesh = parametric_surface(121, 81, [-1.6, 1.6], [-1.3, 1.3], hull)?;
     let triangles = TriangleMesh::new(&mesh)?;
     let reference = ReferenceMesh::new(&triangles);
     let section: Vec<DVec3> = (0..=400).map(|k| hull(0.1, 1.25 * (f64::from(k) / 200.0 - 1.0))).collect();
     let options = fit::Options { is_congruent: false, ..fit::Options::default() };
     let snake = fit(&section, 8, &options, &mut |_| ControlFlow::Continue(()))?.snake;
-    let options = Options { step: 0.02, max_steps: 85, max_deviation: 0.08, ..Options::default() };
-    let (snakes, _) = both_ways(&on(&snake, &reference), &options, 5)?;
-    let told = told(&mut group, &snakes, &triangles, 0.01)?;
+    let options = Options {
+        step: 0.02,
+        max_steps: 75,
+        max_deviation: knob("HD", 0.08),
+        weights: Weights { offset: knob("HO", 0.1), rotation: knob("HR", 0.0), ..Weights::default() },
+        projection: projection::Options { surface_weight: knob("HS", 1.0), ..projection::Options::default() },
+        ..Options::default()
+    };
+    let (snakes, stops) = both_ways(&on(&snake, &reference), &options, 5)?;
+    eprintln!("{stops:?}");
+    let told = told(&mut group, &snakes, &triangles)?;
     let view = |title: &str| View::new(title, 32.0, 28.0);
     let mut first = sheet(view("positions of one snake"), &mesh, SHEET);
     for positions in &snakes {
@@ -65,7 +78,7 @@ pub fn figure2(folder: &Path) -> Result<Group> {
         subtitle: "Each pipe and each lamella follows the same eight arcs; yellow and white: arcs in turn".to_owned(),
         columns: 3,
         views: vec![
-            first.caption(in_words(&told)),
+            first.caption(in_words(&told, triangles.diagonal())),
             framed(pipes, all()).caption(format!("{} pipes of eight arcs", snakes.len())),
             framed(lamellae, all()).caption(format!("{} lamellae that stand on the hull", snakes.len())),
         ],
@@ -99,8 +112,15 @@ pub fn figure5(folder: &Path) -> Result<Group> {
     group.plain("the closed fit: largest distance of the section", fitted.deviation);
     let outward = reference.nearest(snake.contacts()[0]);
     let speeds = [outward.normal.dot(outward.point.with_z(0.0)).signum()];
-    let weights = Weights { offset: 0.1, ..Weights::default() };
-    let options = Options { step: 0.02, max_steps: 400, max_deviation: limit, weights, ..Options::default() };
+    let weights = Weights { offset: knob("TO", 0.1), ..Weights::default() };
+    let options = Options {
+        step: 0.02,
+        max_steps: 400,
+        max_deviation: limit,
+        weights,
+        projection: projection::Options { surface_weight: knob("TS", 0.0), ..projection::Options::default() },
+        ..Options::default()
+    };
     let task = shapeop::geometry::snakes::evolution::Task { speeds: &speeds, ..on(&snake, &reference) };
     let found = run(&task, &options)?;
     group.at_least("the deviation stops it", f64::from(matches!(found.stop, Stop::Deviation(_))), 1.0);
@@ -115,7 +135,7 @@ pub fn figure5(folder: &Path) -> Result<Group> {
     group.plain("height reached, of 3.5", height(snakes.len() - 1));
     group.plain("spacing of positions drawn, least", spacing.iter().copied().fold(f64::INFINITY, f64::min));
     group.plain("spacing of positions drawn, largest", largest(spacing.iter().copied()));
-    let told = told(&mut group, &snakes, &triangles, 0.01)?;
+    let told = told(&mut group, &snakes, &triangles)?;
     let view = |title: &str| View::new(title, 20.0, 24.0);
     let mut climb = sheet(view("positions of the snake"), &mesh, SHEET);
     for positions in &snakes {
@@ -139,7 +159,7 @@ pub fn figure5(folder: &Path) -> Result<Group> {
         columns: 3,
         views: vec![
             climb.caption(format!("it stops where it would be farther than {limit} off the tower")),
-            surface.caption(in_words(&told)),
+            surface.caption(in_words(&told, triangles.diagonal())),
             framed(pipes, mesh.points.iter().step_by(7).copied()).caption("arcs in turn yellow and white".to_owned()),
         ],
     };

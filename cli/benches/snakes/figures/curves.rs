@@ -217,7 +217,7 @@ pub fn figure9(folder: &Path) -> Result<Group> {
     views.push(
         drawn("control points to begin with, 4 arcs")
             .line(&curve.points, THIN, 1.6)
-            .line(&first, BLUE, 2.2)
+            .line(&in_pieces(&first), BLUE, 2.2)
             .dots(&first, BLUE, 4.5)
             .caption("halfway between where tangents lead".to_owned()),
     );
@@ -246,6 +246,11 @@ pub fn figure9(folder: &Path) -> Result<Group> {
     };
     group.picture = Some(scene.write(folder, "initialisation")?);
     Ok(group)
+}
+
+/// Straight lines in pieces, each of which is as near as it is.
+fn in_pieces(points: &[DVec3]) -> Vec<DVec3> {
+    points.windows(2).flat_map(|pair| (0..=24).map(|k| pair[0].lerp(pair[1], f64::from(k) / 24.0))).collect()
 }
 
 /// A mesh with thin edges.

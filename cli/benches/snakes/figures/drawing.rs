@@ -1,18 +1,19 @@
 //! How snakes, surfaces and coverings are drawn, and what is told of every covering.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use glam::{DMat3, DVec3};
+use shapeop::geometry::snakes::Snake;
 use shapeop::geometry::snakes::covering::pipe;
 use shapeop::geometry::snakes::evolution::{Evolution, Options, Stop, Task};
-use shapeop::geometry::snakes::sweep::{arc_kinds, swept_grid};
-use shapeop::geometry::snakes::{ArcShape, Snake};
+use shapeop::geometry::snakes::report::{Reference, Report, ReportOptions, report};
+use shapeop::geometry::snakes::sweep::swept_grid;
 use shapeop::mesh::reference::ReferenceMesh;
-use shapeop::mesh::{Grid, Mesh, ReferenceSurface, TriangleMesh};
+use shapeop::mesh::{Grid, Mesh, TriangleMesh};
 use shapeop_cli::colours::Rgb;
 use shapeop_cli::scene::View;
 
 use crate::group::Group;
-use crate::own::{largest, shape_error};
+use crate::own::{largest, shape_error, stretch};
 use crate::shapes::run;
 
 /// Arcs in turn.
@@ -34,10 +35,12 @@ pub fn sheet(mut view: View, mesh: &Mesh, colour: Rgb) -> View {
     view
 }
 
-/// A surface that lets through what is behind it.
+/// A surface that lets through what is behind it, with thin edges.
 pub fn glass(mut view: View, mesh: &Mesh, opacity: f64) -> View {
     for face in &mesh.faces {
-        view = view.glass(&mesh.corners(face), [0.55, 0.66, 0.80], opacity);
+        let corners = mesh.corners(face);
+        view = view.glass(&corners, [0.55, 0.66, 0.80], opacity);
+        view = view.line(&[corners.clone(), vec![corners[0]]].concat(), FAINT, 0.35);
     }
     view
 }
@@ -112,52 +115,42 @@ pub fn piped(view: View, snake: &Snake, radius: f64, colours: [Rgb; 2]) -> Resul
     Ok(quads(view, &grid, &|i, _| colours[(i / PER_ARC) % 2]))
 }
 
-/// What a covering comes to.
-pub struct Told {
-    pub kinds: usize,
-    pub instances: usize,
-    pub deviation: f64,
-    pub coverage: f64,
+/// Tells of a covering: how many positions and arcs it has and of how many kinds, how far the swept surface is from the reference, in
+/// parts of that one's diagonal, and which part of the reference it is near to, within 0.01 of that.
+pub fn told(group: &mut Group, snakes: &[Snake], reference: &TriangleMesh) -> Result<Report> {
+    let frames: Vec<Vec<DVec3>> = snakes.iter().map(|snake| snake.control().to_vec()).collect();
+    let surface = ReferenceMesh::new(reference);
+    let judged = Some(Reference { mesh: reference, surface: &surface });
+    let found = report(&snakes[0], &frames, judged, &ReportOptions::default())?;
+    let covering = found.reference.context("no surface is swept")?;
+    group.plain("positions", found.positions as f64);
+    group.plain("different arcs", found.kinds.len() as f64);
+    group.plain("arcs in all", found.instances as f64);
+    group.plain("swept surface off the reference, largest / diagonal", covering.deviation.max / reference.diagonal());
+    group.plain("part of the reference that is covered", covering.coverage);
+    kept(group, snakes);
+    Ok(found)
 }
 
-/// Tells of a covering: its different arcs, how many there are, how far the swept surface is from the reference, in parts of that
-/// one's diagonal, and which part of the reference is within `near` of it, in the same.
-pub fn told(group: &mut Group, snakes: &[Snake], reference: &TriangleMesh, near: f64) -> Result<Told> {
-    let arcs: Vec<ArcShape> = snakes.iter().flat_map(|snake| snake.shapes().to_vec()).collect();
-    let kinds = arc_kinds(&arcs, 1e-9)?.len();
-    let grid = swept_by(snakes, PER_ARC)?;
-    let surface = ReferenceMesh::new(reference);
-    let diagonal = reference.diagonal();
-    let off = |p: &DVec3| surface.nearest(*p).point.distance(*p);
-    let deviation = largest(grid.points().iter().map(off)) / diagonal;
-    let cover = TriangleMesh::new(&grid.mesh())?;
-    let cover = ReferenceMesh::new(&cover);
-    let (mut covered, mut all) = (0.0, 0.0);
-    for t in 0..reference.triangles().len() {
-        let middle = reference.corners(t).iter().sum::<DVec3>() / 3.0;
-        let foot = cover.nearest(middle);
-        all += reference.area(t);
-        if foot.overhang == 0.0 && foot.point.distance(middle) <= near * diagonal {
-            covered += reference.area(t);
-        }
-    }
-    let told = Told { kinds, instances: arcs.len(), deviation, coverage: covered / all };
-    group.plain("positions", snakes.len() as f64);
-    group.plain("different arcs", kinds as f64);
-    group.plain("arcs in all", arcs.len() as f64);
-    group.plain("swept surface off the reference, largest / diagonal", deviation);
-    group.plain(&format!("part of the reference within {near} of the diagonal"), told.coverage);
-    group.at_most("radii and lengths", largest(snakes.iter().map(|s| shape_error(&snakes[0], s))), 1e-10);
-    Ok(told)
+/// Tells of edges and diagonals, which keep arcs' shapes, in parts of the snake's length.
+pub fn kept(group: &mut Group, snakes: &[Snake]) {
+    let off = largest(snakes.iter().map(|snake| stretch(&snakes[0], snake)));
+    group.at_most("edges and diagonals / length of the snake", off / snakes[0].length(), 1e-12);
+    group.plain("radii and lengths, largest change", largest(snakes.iter().map(|s| shape_error(&snakes[0], s))));
 }
 
 /// The same in words, for a caption.
-pub fn in_words(told: &Told) -> String {
-    let kinds = if told.kinds == 1 { "1 kind of arc".to_owned() } else { format!("{} kinds of arcs", told.kinds) };
+pub fn in_words(found: &Report, diagonal: f64) -> String {
+    let kinds = if found.kinds.len() == 1 { "1 kind".to_owned() } else { format!("{} kinds", found.kinds.len()) };
+    let covering = found.reference.unwrap_or_default();
     format!(
-        "{} arcs, {kinds}; off the surface by {:.1e} of its size at most,\n{:.1} % of it covered",
-        told.instances,
-        told.deviation,
-        100.0 * told.coverage
+        "{} arcs of {kinds}; off the surface by {:.1e} of its size at most,\n{:.0} % of it covered",
+        found.instances,
+        covering.deviation.max / diagonal,
+        100.0 * covering.coverage
     )
+}
+
+pub fn knob(name: &str, value: f64) -> f64 {
+    std::env::var(name).ok().and_then(|s| s.parse().ok()).unwrap_or(value)
 }

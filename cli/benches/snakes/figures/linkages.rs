@@ -12,7 +12,7 @@ use shapeop::geometry::snakes::{Linkage, Snake};
 use shapeop_cli::colours::Rgb;
 use shapeop_cli::scene::{BLUE, INK, RED, Scene, View};
 
-use super::drawing::{ARCS, BLUES, PER_ARC, SHEET, THIN, YELLOW, framed, line, piped, quads, upright};
+use super::drawing::{ARCS, BLUES, PER_ARC, SHEET, THIN, YELLOW, framed, knob, line, piped, quads, upright};
 use crate::group::Group;
 use crate::own::{largest, shape_error, stretch};
 use crate::shapes::{TORSIONS, linked};
@@ -131,7 +131,7 @@ pub fn figure17(folder: &Path) -> Result<Group> {
     group.plain("arcs in all", (6 * count) as f64);
     let mut views = Vec::new();
     for (snakes, title) in moments.iter().zip(["a moment", "a third of the cycle later", "two thirds later"]) {
-        let mut view = framed(View::new(title, 62.0, 30.0), all().flat_map(|s| s.sample(2)));
+        let mut view = framed(View::new(title, knob("AA", 35.0), knob("AH", 24.0)), all().flat_map(|s| s.sample(2)));
         for snake in snakes {
             view = piped(view, snake, 0.032, ARCS)?;
         }
@@ -146,7 +146,7 @@ pub fn figure17(folder: &Path) -> Result<Group> {
         subtitle: format!(
             "{count} copies of six congruent arcs, each an eighteenth of the cycle further on: a wave runs along"
         ),
-        columns: 3,
+        columns: 1,
         views,
     };
     group.picture = Some(scene.write(folder, "array")?);
@@ -184,9 +184,11 @@ pub fn figure18(folder: &Path) -> Result<Group> {
     let mut path = paths[3].clone();
     path.push(path[0]);
     let mut views = Vec::new();
-    for (phase, title) in [(0.05, "a position, and the surface of the whole cycle"), (0.55, "half a cycle later")] {
+    for (phase, title) in
+        [(knob("P1", 0.55), "a position, and the surface of the whole cycle"), (knob("P2", 0.3), "another position")]
+    {
         let control = motion.at_phases(&[phase])?.swap_remove(0);
-        let mut view = quads(View::new(title, -18.0, 30.0), &grid, &faces);
+        let mut view = quads(View::new(title, knob("SA", -18.0), knob("SH", 30.0)), &grid, &faces);
         view = piped(view, &start.moved(control)?, 0.05, ARCS)?;
         view = view.line(&path, YELLOW, 3.0);
         views.push(hinges(view, &start));

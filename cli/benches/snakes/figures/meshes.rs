@@ -12,12 +12,14 @@ use shapeop::geometry::snakes::fit::{self, fit};
 use shapeop::geometry::snakes::mesh_curve::mesh_curve;
 use shapeop::geometry::snakes::{Snake, projection};
 use shapeop::mesh::reference::ReferenceMesh;
-use shapeop::mesh::{Mesh, TriangleMesh, file};
-use shapeop_cli::scene::{BLUE, RED, Scene, View};
+use shapeop::mesh::{Mesh, ReferenceSurface, TriangleMesh, file};
+use shapeop_cli::colours::Rgb;
+use shapeop_cli::scene::{BLUE, INK, RED, Scene, View};
 
-use super::drawing::{ARCS, SHEET, THIN, both_ways, framed, glass, in_words, line, swept, told};
+use super::drawing::{
+    ARCS, PER_ARC, SHEET, THIN, both_ways, framed, glass, in_words, knob, line, quads, swept, swept_by, told,
+};
 use crate::group::Group;
-use crate::own::largest;
 use crate::shapes::on;
 
 /// A mesh with its points moved along their normals.
@@ -42,14 +44,24 @@ fn congruent(reference: &ReferenceMesh<'_>, middle: DVec3, tangent: DVec3, kappa
     Ok(fit(&points, 12, &options, &mut |_| ControlFlow::Continue(()))?.snake)
 }
 
-/// The largest change of a torsion, in radians.
+/// The root mean square change of torsions, in radians.
 fn twist(snakes: &[Snake], start: &Snake) -> f64 {
     let of = |snake: &Snake| {
         let pairs = snake.torsions().into_iter().zip(start.torsions());
-        largest(pairs.map(|(a, b)| ((a - b + PI).rem_euclid(2.0 * PI) - PI).abs()))
+        pairs.map(|(a, b)| ((a - b + PI).rem_euclid(2.0 * PI) - PI).powi(2)).collect::<Vec<_>>()
     };
-    largest(snakes.iter().map(of))
+    let all: Vec<f64> = snakes.iter().flat_map(of).collect();
+    (all.iter().sum::<f64>() / all.len() as f64).sqrt()
 }
+
+/// White on the surface, red where outside of it, blue where inside, at this distance in full.
+fn tone(signed: f64, full: f64) -> Rgb {
+    let (part, far) = ((signed.abs() / full).min(1.0), if signed > 0.0 { RED } else { BLUE });
+    std::array::from_fn(|k| 0.96 + part * (far[k] - 0.96))
+}
+
+/// The distance that is shown in full colour.
+const FULL: f64 = 0.3;
 
 /// Where snakes begin on the gridshell: near a point, in a direction, with a curvature and a length.
 struct Begin {
@@ -76,19 +88,44 @@ pub fn figure11(folder: &Path) -> Result<Group> {
     let reference = ReferenceMesh::new(&triangles);
     let weights = Weights { tangential: 10.0, offset: 1.0, rotation: 10.0, orthogonal: 0.0 };
     let mut views = Vec::new();
-    for begin in [&FIRST, &SECOND] {
+    let of = |name: &str, begin: &Begin| -> (Begin, usize) {
+        let v: Vec<f64> =
+            std::env::var(name).unwrap_or_default().split_whitespace().filter_map(|x| x.parse().ok()).collect();
+        if v.len() == 9 {
+            (
+                Begin {
+                    middle: DVec3::new(v[0], v[1], v[2]),
+                    tangent: DVec3::new(v[3], v[4], v[5]),
+                    kappa: v[6],
+                    length: v[7],
+                },
+                v[8] as usize,
+            )
+        } else {
+            (Begin { ..*begin }, 90)
+        }
+    };
+    for (begin, steps) in [of("B1", &FIRST), of("B2", &SECOND)] {
         let snake = congruent(&reference, begin.middle, begin.tangent, begin.kappa, begin.length)?;
-        let options = Options { step: 0.1, max_steps: 90, max_deviation: 0.5, weights, ..Options::default() };
-        let (snakes, _) = both_ways(&on(&snake, &reference), &options, 4)?;
-        let told = told(&mut group, &snakes, &triangles, 0.01)?;
-        group.plain("largest change of a torsion, radians", twist(&snakes, &snake));
+        let options = Options {
+            step: 0.1,
+            max_steps: steps,
+            max_deviation: knob("BD", 0.5),
+            weights,
+            projection: projection::Options { surface_weight: knob("BS", 1.0), ..projection::Options::default() },
+            ..Options::default()
+        };
+        let (snakes, stops) = both_ways(&on(&snake, &reference), &options, 4)?;
+        eprintln!("{stops:?}");
+        let told = told(&mut group, &snakes, &triangles)?;
+        group.plain("root mean square change of torsions, radians", twist(&snakes, &snake));
         let mut view = View::new(&format!("curvature {}, length {}", begin.kappa, begin.length), 20.0, 50.0);
         view = view.mesh(&mesh, 1.0, 0.2, &|_| SHEET);
         view = swept(view, &snakes, 2, ARCS)?;
         for positions in snakes.iter().step_by(2) {
             view = line(view, positions, THIN, 0.7);
         }
-        views.push(line(view, &snake, RED, 3.0).caption(in_words(&told)));
+        views.push(line(view, &snake, RED, 3.0).caption(in_words(&told, triangles.diagonal())));
     }
     let scene = Scene {
         title: "A mesh covered by positions of a snake of congruent arcs".to_owned(),
@@ -112,30 +149,48 @@ pub fn figure12(folder: &Path) -> Result<Group> {
     let snake = congruent(&reference, FIRST.middle, FIRST.tangent, FIRST.kappa, FIRST.length)?;
     let mut views = Vec::new();
     let mut twists = Vec::new();
+    let upward = reference.nearest(snake.contacts()[6]).normal.z.signum();
     for (title, rotation, surface_weight) in
-        [("heights over the mesh kept", 0.0, 1.0), ("as rigid as possible", 100.0, 0.0)]
+        [("heights over the mesh kept", 0.0, 1.0), ("as rigid as possible", knob("RR", 100.0), knob("RS", 0.0))]
     {
-        let weights = Weights { tangential: 1.0, offset: 0.01, rotation, orthogonal: 0.0 };
+        let weights = Weights { tangential: 1.0, offset: knob("RO", 0.01), rotation, orthogonal: 0.0 };
         let projection = projection::Options { surface_weight, ..projection::Options::default() };
-        let options =
-            Options { step: 0.1, max_steps: 90, max_deviation: 2.0, weights, projection, ..Options::default() };
-        let (snakes, _) = both_ways(&on(&snake, &reference), &options, 4)?;
-        let told = told(&mut group, &snakes, &triangles, 0.01)?;
+        let options = Options {
+            step: 0.1,
+            max_steps: 90,
+            max_deviation: knob("RD", 2.0),
+            weights,
+            projection,
+            ..Options::default()
+        };
+        let (snakes, stops) = both_ways(&on(&snake, &reference), &options, 4)?;
+        eprintln!("{stops:?}");
+        let told = told(&mut group, &snakes, &triangles)?;
         twists.push(twist(&snakes, &snake));
-        group.plain(&format!("{title}: largest change of a torsion, radians"), twists[twists.len() - 1]);
-        let mut view = swept(View::new(title, 20.0, 50.0), &snakes, 2, ARCS)?;
-        view = glass(view, &mesh, 0.35);
+        group.plain(&format!("{title}: root mean square change of torsions, radians"), twists[twists.len() - 1]);
+        let grid = swept_by(&snakes, PER_ARC)?;
+        let signed = |i: usize, j: usize| {
+            let middle = grid.corners(i, j).iter().sum::<DVec3>() / 4.0;
+            let foot = reference.nearest(middle);
+            (middle - foot.point).dot(foot.normal) * upward
+        };
+        let view = quads(View::new(title, 20.0, 50.0), &grid, &|i, j| tone(signed(i, j), FULL));
+        let mut view = glass(view, &mesh, 0.12);
         for positions in snakes.iter().step_by(2) {
-            view = line(view, positions, BLUE, 0.7);
+            view = line(view, positions, THIN, 0.9);
         }
-        view = framed(line(view, &snake, RED, 3.0), mesh.points.iter().copied());
-        let words = format!("{};\ntorsions change by {:.2} rad at most", in_words(&told), twists[twists.len() - 1]);
+        view = framed(line(view, &snake, INK, 3.0), mesh.points.iter().copied());
+        let words = format!(
+            "{};\ntorsions change by {:.2} rad, root mean square",
+            in_words(&told, triangles.diagonal()),
+            twists[twists.len() - 1]
+        );
         views.push(view.caption(words));
     }
     group.at_least("change of torsions, heights kept over as rigid as possible", twists[0] / twists[1], 1.0);
     let scene = Scene {
         title: "As rigid as possible: a snake follows a mesh only so far".to_owned(),
-        subtitle: "The reference mesh as glass; where it covers the swept surface, that is behind it".to_owned(),
+        subtitle: "Swept surfaces: white on the reference mesh, red outside of it, blue inside, in full where 0.3 off; the mesh is 48 wide; black: the start".to_owned(),
         columns: 2,
         views,
     };
