@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use super::drawing::knob;
 use anyhow::Result;
 use glam::DVec3;
 use shapeop::geometry::snakes::covering::lamella;
@@ -25,10 +24,7 @@ use crate::shapes::{on, run};
 
 /// A hull: a barrel whose half width and height change along it.
 fn hull(u: f64, v: f64) -> DVec3 {
-    let (wide, high) = (
-        1.0 + super::drawing::knob("HW", 0.07) * (1.1 * u).sin(),
-        0.85 + super::drawing::knob("HH", 0.06) * (1.3 * u + 0.4).cos(),
-    );
+    let (wide, high) = (1.0 + 0.07 * (1.1 * u).sin(), 0.85 + 0.06 * (1.3 * u + 0.4).cos());
     DVec3::new(u, wide * v.sin(), high * v.cos())
 }
 
@@ -44,16 +40,9 @@ pub fn figure2(folder: &Path) -> Result<Group> {
     let section: Vec<DVec3> = (0..=400).map(|k| hull(0.1, 1.25 * (f64::from(k) / 200.0 - 1.0))).collect();
     let options = fit::Options { is_congruent: false, ..fit::Options::default() };
     let snake = fit(&section, 8, &options, &mut |_| ControlFlow::Continue(()))?.snake;
-    let options = Options {
-        step: 0.02,
-        max_steps: 75,
-        max_deviation: knob("HD", 0.08),
-        weights: Weights { offset: knob("HO", 0.1), rotation: knob("HR", 0.0), ..Weights::default() },
-        projection: projection::Options { surface_weight: knob("HS", 1.0), ..projection::Options::default() },
-        ..Options::default()
-    };
-    let (snakes, stops) = both_ways(&on(&snake, &reference), &options, 5)?;
-    eprintln!("{stops:?}");
+    let options = Options { step: 0.02, max_steps: 75, max_deviation: 0.06, ..Options::default() };
+    let snakes = both_ways(&on(&snake, &reference), &options, 0.1)?;
+
     let told = told(&mut group, &snakes, &triangles)?;
     let view = |title: &str| View::new(title, 32.0, 28.0);
     let mut first = sheet(view("positions of one snake"), &mesh, SHEET);
@@ -112,19 +101,19 @@ pub fn figure5(folder: &Path) -> Result<Group> {
     group.plain("the closed fit: largest distance of the section", fitted.deviation);
     let outward = reference.nearest(snake.contacts()[0]);
     let speeds = [outward.normal.dot(outward.point.with_z(0.0)).signum()];
-    let weights = Weights { offset: knob("TO", 0.1), ..Weights::default() };
+    let weights = Weights { offset: 0.1, ..Weights::default() };
     let options = Options {
         step: 0.02,
         max_steps: 400,
         max_deviation: limit,
         weights,
-        projection: projection::Options { surface_weight: knob("TS", 0.0), ..projection::Options::default() },
+        projection: projection::Options { surface_weight: 0.0, ..projection::Options::default() },
         ..Options::default()
     };
     let task = shapeop::geometry::snakes::evolution::Task { speeds: &speeds, ..on(&snake, &reference) };
     let found = run(&task, &options)?;
     group.at_least("the deviation stops it", f64::from(matches!(found.stop, Stop::Deviation(_))), 1.0);
-    let snakes = every(&found, 5);
+    let snakes = every(&found, 0.1);
     group.at_most(
         "contacts and middles of arcs off the tower",
         largest(found.frames.iter().map(|f| f.deviation)),

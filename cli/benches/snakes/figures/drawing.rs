@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use glam::{DMat3, DVec3};
 use shapeop::geometry::snakes::Snake;
 use shapeop::geometry::snakes::covering::pipe;
-use shapeop::geometry::snakes::evolution::{Evolution, Options, Stop, Task};
+use shapeop::geometry::snakes::evolution::{Evolution, Options, Task};
 use shapeop::geometry::snakes::report::{Reference, Report, ReportOptions, report};
 use shapeop::geometry::snakes::sweep::swept_grid;
 use shapeop::mesh::reference::ReferenceMesh;
@@ -82,20 +82,28 @@ pub fn framed(view: View, points: impl Iterator<Item = DVec3>) -> View {
     points.fold(view, |view, p| view.line(&[p, p], [1.0; 3], 0.0))
 }
 
-/// Positions so many apart along an evolution, the last one included.
-pub fn every(found: &Evolution, step: usize) -> Vec<Snake> {
-    found.frames.iter().step_by(step).map(|frame| frame.snake.clone()).collect()
+/// Positions at about equal times, so far apart; the start is one.
+pub fn every(found: &Evolution, time: f64) -> Vec<Snake> {
+    let mut next = 0.0;
+    let mut snakes = Vec::new();
+    for frame in &found.frames {
+        if frame.time >= next - 1e-9 {
+            snakes.push(frame.snake.clone());
+            next += time;
+        }
+    }
+    snakes
 }
 
-/// Positions on both sides of the start: those with the speeds turned around, the start, and those with the speeds as they are.
-pub fn both_ways(task: &Task<'_>, options: &Options, step: usize) -> Result<(Vec<Snake>, [Stop; 2])> {
-    let back: Vec<f64> = task.speeds.iter().map(|speed| -speed).collect();
-    let [there, back] = [run(task, options)?, run(&Task { speeds: &back, ..*task }, options)?];
-    let stops = [there.stop, back.stop];
-    let mut snakes = every(&back, step);
+/// Positions on both sides of the start, at equal times: those with the speeds turned around, the start, and those with the speeds
+/// as they are.
+pub fn both_ways(task: &Task<'_>, options: &Options, time: f64) -> Result<Vec<Snake>> {
+    let turned: Vec<f64> = task.speeds.iter().map(|speed| -speed).collect();
+    let [there, back] = [run(task, options)?, run(&Task { speeds: &turned, ..*task }, options)?];
+    let mut snakes = every(&back, time);
     snakes.reverse();
-    snakes.extend(every(&there, step).into_iter().skip(1));
-    Ok((snakes, stops))
+    snakes.extend(every(&there, time).into_iter().skip(1));
+    Ok(snakes)
 }
 
 /// A snake turned so that its ends are as high as each other, along the x axis, and its middle above them.
@@ -149,8 +157,4 @@ pub fn in_words(found: &Report, diagonal: f64) -> String {
         covering.deviation.max / diagonal,
         100.0 * covering.coverage
     )
-}
-
-pub fn knob(name: &str, value: f64) -> f64 {
-    std::env::var(name).ok().and_then(|s| s.parse().ok()).unwrap_or(value)
 }

@@ -77,8 +77,8 @@ pub fn figure10(folder: &Path) -> Result<Group> {
     );
     let snake = arch(8, 0.34, 0.25)?;
     let (first, last) = (snake.control()[0], snake.control()[9]);
-    let a = wavy(first, DVec3::Y, [(-0.30 * DVec3::X, 0.9), (0.15 * DVec3::Z, 1.2)], 3.4)?;
-    let b = wavy(last, DVec3::Y, [(-0.45 * DVec3::X, 0.7), (-0.10 * DVec3::Z, 1.5)], 3.4)?;
+    let a = wavy(first, DVec3::Y, [(-0.40 * DVec3::X, 0.6), (0.15 * DVec3::Z, 1.2)], 3.4)?;
+    let b = wavy(last, DVec3::Y, [(-0.10 * DVec3::X, 0.5), (-0.10 * DVec3::Z, 1.5)], 3.4)?;
     let rails = [
         Rail::Driven { point: 0, curve: &a, start: 0.0, speed: 1.0 },
         Rail::Driven { point: 9, curve: &b, start: 0.0, speed: 1.0 },
@@ -91,9 +91,11 @@ pub fn figure10(folder: &Path) -> Result<Group> {
         |f: &Frame| f.snake.control()[0].distance(a.point(f.time)).max(f.snake.control()[9].distance(b.point(f.time)));
     group.at_most("ends off their rails", largest(found.frames.iter().map(off)), 1e-12);
     told(&mut group, &snake, &found);
-    let snakes = every(&found, 1);
+    let snakes = every(&found, 0.05);
     let mut views = Vec::new();
-    for (shown, title) in [(17, "after a quarter"), (34, "after a half"), (snakes.len() - 2, "at the end")] {
+    for (shown, title) in
+        [(snakes.len() / 4, "after a quarter"), (snakes.len() / 2, "after a half"), (snakes.len() - 2, "at the end")]
+    {
         let mut view = View::new(title, 40.0, 30.0);
         for positions in snakes[..shown].iter().step_by(4) {
             view = line(view, positions, THIN, 1.0);
@@ -129,10 +131,10 @@ pub fn figure13(folder: &Path) -> Result<Group> {
     let snake = tilted(arch(12, 0.24, 0.12)?)?;
     let contacts = snake.contacts();
     let along = DVec3::Y;
-    let a = wavy(contacts[0], along, [(-0.20 * DVec3::X, 0.9), (0.05 * DVec3::Z, 1.4)], 3.6)?;
-    let b = wavy(contacts[12], along, [(-0.28 * DVec3::X, 0.8), (0.08 * DVec3::Z, 0.8)], 3.6)?;
-    let c = wavy(contacts[4], along, [(-0.20 * DVec3::X, 0.9), (0.05 * DVec3::Z, 1.5)], 4.4)?;
-    let d = wavy(contacts[8], along, [(-0.26 * DVec3::X, 0.8), (-0.06 * DVec3::Z, 1.2)], 4.4)?;
+    let a = wavy(contacts[0], along, [(-0.35 * DVec3::X, 0.6), (0.05 * DVec3::Z, 1.4)], 3.6)?;
+    let b = wavy(contacts[12], along, [(-0.12 * DVec3::X, 0.5), (0.08 * DVec3::Z, 0.8)], 3.6)?;
+    let c = wavy(contacts[4], along, [(-0.26 * DVec3::X, 0.6), (-0.08 * DVec3::Z, 0.7)], 4.4)?;
+    let d = wavy(contacts[8], along, [(-0.18 * DVec3::X, 0.55), (-0.10 * DVec3::Z, 0.6)], 4.4)?;
     let rails = [
         Rail::Driven { point: 0, curve: &a, start: 0.0, speed: 1.0 },
         Rail::Driven { point: 13, curve: &b, start: 0.0, speed: 1.0 },
@@ -150,7 +152,7 @@ pub fn figure13(folder: &Path) -> Result<Group> {
     let gap = missed(&found.frames, 2, &c).max(missed(&found.frames, 3, &d));
     group.at_most("snake and gliding rails apart by, in a polyline", gap, 1e-6);
     told(&mut group, &snake, &found);
-    let snakes = every(&found, 1);
+    let snakes = every(&found, 0.05);
     let bent = largest(snakes.iter().map(|s| procrustes(snake.control(), s.control())));
     group.plain("off congruence, root mean square, largest", bent);
     let end = found.last().time;
@@ -186,7 +188,10 @@ pub fn figure14(folder: &Path) -> Result<Group> {
         "Fig. 14: a kinematic surface",
         "The ends run along two rails at a constant distance, and the snake glides on one more: all positions are congruent.",
     );
-    let snake = tilted(arch(12, 0.24, 0.12)?)?;
+    let level = tilted(arch(12, 0.24, 0.12)?)?;
+    // Across the rails, so that the ends can go on by different lengths.
+    let turn = DMat3::from_rotation_z(0.6);
+    let snake = level.moved(level.control().iter().map(|p| turn * *p).collect())?;
     let contacts = snake.contacts();
     let a = wavy(contacts[0], DVec3::Y, [(-0.25 * DVec3::X, 0.9), (0.20 * DVec3::Z, 0.9)], 4.2)?;
     let b = wavy(contacts[12], DVec3::Y, [(-0.22 * DVec3::X, 0.9), (-0.15 * DVec3::Z, 0.8)], 6.0)?;
@@ -204,7 +209,7 @@ pub fn figure14(folder: &Path) -> Result<Group> {
         f64::from(matches!(found.stop, Stop::RailEnd { distance: 0.0, .. })),
         1.0,
     );
-    let snakes = every(&found, 1);
+    let snakes = every(&found, 0.05);
     let rms = largest(snakes.iter().map(|s| procrustes(snake.control(), s.control())));
     group.at_most("off congruence, root mean square, largest", rms, 1e-6);
     let gap = missed(&found.frames, 2, &c);
@@ -262,7 +267,7 @@ pub fn figure15(folder: &Path) -> Result<Group> {
     let weights = Weights { tangential: 1.0, offset: 1.0, rotation: 1.0, orthogonal: 0.0 };
     let options = Options { step: 0.05, max_steps: 72, weights, ..Options::default() };
     let found = run(&Task { rails: &rails, direction: Direction::Along(DVec3::Z), ..Task::new(&snake) }, &options)?;
-    let snakes = every(&found, 4);
+    let snakes = every(&found, 0.2);
     let rises: Vec<f64> = snakes
         .windows(2)
         .flat_map(|pair| {
@@ -281,7 +286,7 @@ pub fn figure15(folder: &Path) -> Result<Group> {
     for (k, snake) in snakes.iter().enumerate() {
         positions = line(positions, snake, if k == 0 { INK } else { BLUE }, if k == 0 { 3.0 } else { 1.6 });
     }
-    let all = every(&found, 1);
+    let all = every(&found, 0.05);
     let mut whole = swept(View::new("the surface", 22.0, 18.0), &all, 4, ARCS)?;
     for snake in &snakes {
         whole = line(whole, snake, THIN, 0.8);

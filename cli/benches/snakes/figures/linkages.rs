@@ -12,7 +12,7 @@ use shapeop::geometry::snakes::{Linkage, Snake};
 use shapeop_cli::colours::Rgb;
 use shapeop_cli::scene::{BLUE, INK, RED, Scene, View};
 
-use super::drawing::{ARCS, BLUES, PER_ARC, SHEET, THIN, YELLOW, framed, knob, line, piped, quads, upright};
+use super::drawing::{ARCS, BLUES, PER_ARC, SHEET, THIN, YELLOW, framed, line, piped, quads, upright};
 use crate::group::Group;
 use crate::own::{largest, shape_error, stretch};
 use crate::shapes::{TORSIONS, linked};
@@ -108,12 +108,12 @@ const ROOF: [f64; 5] = [0.7, 1.5, 0.6, -0.1, -1.1];
 pub fn figure17(folder: &Path) -> Result<Group> {
     let mut group = Group::new(
         "Fig. 17: an array of copies of the linkage, each further on",
-        "Thirty-six copies side by side, each an eighteenth of the cycle on; three moments. All arcs are congruent.",
+        "Thirty-six copies side by side, each an eighteenth of the cycle on; two moments. All arcs are congruent.",
     );
     let motion = moved(upright(&linked(0.8, &ROOF)?)?, 0.02)?;
     let start = motion.snake(0)?;
     let (count, offset) = (36, 0.16 * DVec3::Y);
-    let moments: Vec<Vec<Snake>> = [0.0, 1.0 / 3.0, 2.0 / 3.0]
+    let moments: Vec<Vec<Snake>> = [0.0, 0.5]
         .iter()
         .map(|phase| {
             let copies = motion.copies(count, *phase, 1.0 / 18.0, offset)?;
@@ -130,8 +130,8 @@ pub fn figure17(folder: &Path) -> Result<Group> {
     group.plain("different arcs", 1.0);
     group.plain("arcs in all", (6 * count) as f64);
     let mut views = Vec::new();
-    for (snakes, title) in moments.iter().zip(["a moment", "a third of the cycle later", "two thirds later"]) {
-        let mut view = framed(View::new(title, knob("AA", 35.0), knob("AH", 24.0)), all().flat_map(|s| s.sample(2)));
+    for (snakes, title) in moments.iter().zip(["a moment", "half a cycle later"]) {
+        let mut view = framed(View::new(title, 30.0, 22.0), all().flat_map(|s| s.sample(2)));
         for snake in snakes {
             view = piped(view, snake, 0.032, ARCS)?;
         }
@@ -146,7 +146,7 @@ pub fn figure17(folder: &Path) -> Result<Group> {
         subtitle: format!(
             "{count} copies of six congruent arcs, each an eighteenth of the cycle further on: a wave runs along"
         ),
-        columns: 1,
+        columns: 2,
         views,
     };
     group.picture = Some(scene.write(folder, "array")?);
@@ -184,11 +184,9 @@ pub fn figure18(folder: &Path) -> Result<Group> {
     let mut path = paths[3].clone();
     path.push(path[0]);
     let mut views = Vec::new();
-    for (phase, title) in
-        [(knob("P1", 0.55), "a position, and the surface of the whole cycle"), (knob("P2", 0.3), "another position")]
-    {
+    for (phase, title) in [(0.8, "a position, and the surface of the whole cycle"), (0.55, "another position")] {
         let control = motion.at_phases(&[phase])?.swap_remove(0);
-        let mut view = quads(View::new(title, knob("SA", -18.0), knob("SH", 30.0)), &grid, &faces);
+        let mut view = quads(View::new(title, -18.0, 30.0), &grid, &faces);
         view = piped(view, &start.moved(control)?, 0.05, ARCS)?;
         view = view.line(&path, YELLOW, 3.0);
         views.push(hinges(view, &start));

@@ -17,7 +17,7 @@ use shapeop_cli::colours::Rgb;
 use shapeop_cli::scene::{BLUE, INK, RED, Scene, View};
 
 use super::drawing::{
-    ARCS, PER_ARC, SHEET, THIN, both_ways, framed, glass, in_words, knob, line, quads, swept, swept_by, told,
+    ARCS, PER_ARC, SHEET, THIN, both_ways, framed, glass, in_words, line, quads, swept, swept_by, told,
 };
 use crate::group::Group;
 use crate::shapes::on;
@@ -69,12 +69,19 @@ struct Begin {
     tangent: DVec3,
     kappa: f64,
     length: f64,
+    /// Steps at most to either side.
+    steps: usize,
 }
 
-const FIRST: Begin =
-    Begin { middle: DVec3::new(6.0, 4.0, 8.0), tangent: DVec3::new(0.3, 1.0, 0.0), kappa: 0.2, length: 16.0 };
+const FIRST: Begin = Begin {
+    middle: DVec3::new(6.0, 4.0, 8.0),
+    tangent: DVec3::new(0.3, 1.0, 0.0),
+    kappa: 0.2,
+    length: 16.0,
+    steps: 90,
+};
 const SECOND: Begin =
-    Begin { middle: DVec3::new(-6.0, 3.0, 8.0), tangent: DVec3::new(1.0, 0.4, 0.0), kappa: 0.3, length: 9.0 };
+    Begin { middle: DVec3::new(0.0, -7.0, 6.0), tangent: DVec3::X, kappa: 0.2, length: 16.0, steps: 120 };
 
 pub fn figure11(folder: &Path) -> Result<Group> {
     let mut group = Group::new(
@@ -88,35 +95,10 @@ pub fn figure11(folder: &Path) -> Result<Group> {
     let reference = ReferenceMesh::new(&triangles);
     let weights = Weights { tangential: 10.0, offset: 1.0, rotation: 10.0, orthogonal: 0.0 };
     let mut views = Vec::new();
-    let of = |name: &str, begin: &Begin| -> (Begin, usize) {
-        let v: Vec<f64> =
-            std::env::var(name).unwrap_or_default().split_whitespace().filter_map(|x| x.parse().ok()).collect();
-        if v.len() == 9 {
-            (
-                Begin {
-                    middle: DVec3::new(v[0], v[1], v[2]),
-                    tangent: DVec3::new(v[3], v[4], v[5]),
-                    kappa: v[6],
-                    length: v[7],
-                },
-                v[8] as usize,
-            )
-        } else {
-            (Begin { ..*begin }, 90)
-        }
-    };
-    for (begin, steps) in [of("B1", &FIRST), of("B2", &SECOND)] {
+    for begin in [&FIRST, &SECOND] {
         let snake = congruent(&reference, begin.middle, begin.tangent, begin.kappa, begin.length)?;
-        let options = Options {
-            step: 0.1,
-            max_steps: steps,
-            max_deviation: knob("BD", 0.5),
-            weights,
-            projection: projection::Options { surface_weight: knob("BS", 1.0), ..projection::Options::default() },
-            ..Options::default()
-        };
-        let (snakes, stops) = both_ways(&on(&snake, &reference), &options, 4)?;
-        eprintln!("{stops:?}");
+        let options = Options { step: 0.1, max_steps: begin.steps, max_deviation: 0.5, weights, ..Options::default() };
+        let snakes = both_ways(&on(&snake, &reference), &options, 0.4)?;
         let told = told(&mut group, &snakes, &triangles)?;
         group.plain("root mean square change of torsions, radians", twist(&snakes, &snake));
         let mut view = View::new(&format!("curvature {}, length {}", begin.kappa, begin.length), 20.0, 50.0);
@@ -151,20 +133,13 @@ pub fn figure12(folder: &Path) -> Result<Group> {
     let mut twists = Vec::new();
     let upward = reference.nearest(snake.contacts()[6]).normal.z.signum();
     for (title, rotation, surface_weight) in
-        [("heights over the mesh kept", 0.0, 1.0), ("as rigid as possible", knob("RR", 100.0), knob("RS", 0.0))]
+        [("heights over the mesh kept", 0.0, 1.0), ("as rigid as possible", 10.0, 0.0)]
     {
-        let weights = Weights { tangential: 1.0, offset: knob("RO", 0.01), rotation, orthogonal: 0.0 };
+        let weights = Weights { tangential: 1.0, offset: 1e-3, rotation, orthogonal: 0.0 };
         let projection = projection::Options { surface_weight, ..projection::Options::default() };
-        let options = Options {
-            step: 0.1,
-            max_steps: 90,
-            max_deviation: knob("RD", 2.0),
-            weights,
-            projection,
-            ..Options::default()
-        };
-        let (snakes, stops) = both_ways(&on(&snake, &reference), &options, 4)?;
-        eprintln!("{stops:?}");
+        let options =
+            Options { step: 0.1, max_steps: 90, max_deviation: 2.0, weights, projection, ..Options::default() };
+        let snakes = both_ways(&on(&snake, &reference), &options, 0.4)?;
         let told = told(&mut group, &snakes, &triangles)?;
         twists.push(twist(&snakes, &snake));
         group.plain(&format!("{title}: root mean square change of torsions, radians"), twists[twists.len() - 1]);
