@@ -85,7 +85,6 @@ pub fn figure10(folder: &Path) -> Result<Group> {
     ];
     let options = Options { step: 0.05, max_steps: 200, weights: ROTATION, ..Options::default() };
     let found = run(&Task { rails: &rails, ..Task::new(&snake) }, &options)?;
-    eprintln!("{:?} {} {}", found.stop, found.frames.len(), found.last().time);
     group.at_least("it goes to the rails' end", f64::from(matches!(found.stop, Stop::RailEnd { .. })), 1.0);
     let off =
         |f: &Frame| f.snake.control()[0].distance(a.point(f.time)).max(f.snake.control()[9].distance(b.point(f.time)));
@@ -143,7 +142,6 @@ pub fn figure13(folder: &Path) -> Result<Group> {
     ];
     let options = Options { step: 0.05, max_steps: 200, weights: ROTATION, ..Options::default() };
     let found = run(&Task { rails: &rails, ..Task::new(&snake) }, &options)?;
-    eprintln!("{:?} {} {}", found.stop, found.frames.len(), found.last().time);
     group.at_least(
         "it goes to the rails' end",
         f64::from(matches!(found.stop, Stop::RailEnd { distance: 0.0, .. })),
@@ -203,7 +201,6 @@ pub fn figure14(folder: &Path) -> Result<Group> {
     ];
     let options = Options { step: 0.05, max_steps: 200, keeps_torsions: true, weights: ROTATION, ..Options::default() };
     let found = run(&Task { rails: &rails, ..Task::new(&snake) }, &options)?;
-    eprintln!("{:?} {} {}", found.stop, found.frames.len(), found.last().time);
     group.at_least(
         "it goes to the rail's end",
         f64::from(matches!(found.stop, Stop::RailEnd { distance: 0.0, .. })),

@@ -3,7 +3,6 @@
 use std::f64::consts::{PI, TAU};
 
 use anyhow::Result;
-use glam::DVec3;
 use shapeop::geometry::snakes::evolution::{Evolution, Options, Stop, Task, Weights};
 use shapeop::geometry::snakes::{ArcShape, Pose, Snake, projection};
 use shapeop::mesh::ReferenceSurface;
@@ -156,7 +155,5 @@ pub fn rings() -> Result<Group> {
         let off = |s: &Snake| largest(s.contacts().iter().map(|c| cone.nearest(*c).point.distance(*c)));
         group.at_most(&format!("cone, {which}: contacts off it"), worst(&left, off), 0.05);
     }
-    let up: Vec<DVec3> = ring.contacts();
-    group.plain("diameter of the ring", 2.0 * largest(up.iter().map(|c| c.length())));
     Ok(group)
 }
