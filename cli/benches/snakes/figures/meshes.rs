@@ -81,7 +81,7 @@ const FIRST: Begin = Begin {
     steps: 90,
 };
 const SECOND: Begin =
-    Begin { middle: DVec3::new(0.0, -7.0, 6.0), tangent: DVec3::X, kappa: 0.2, length: 16.0, steps: 120 };
+    Begin { middle: DVec3::new(0.0, -7.0, 6.0), tangent: DVec3::X, kappa: 0.2, length: 16.0, steps: 90 };
 
 pub fn figure11(folder: &Path) -> Result<Group> {
     let mut group = Group::new(

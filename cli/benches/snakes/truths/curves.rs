@@ -19,6 +19,9 @@ use crate::shapes::surface;
 
 const EVERYWHERE: [[f64; 2]; 2] = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 
+/// How far a curve is off after so many steps.
+type Errors<'a> = &'a dyn Fn(usize, Method) -> Result<f64>;
+
 type Surface<'a> = &'a dyn Fn(f64, f64) -> SurfaceJet;
 
 fn trace(
@@ -63,8 +66,7 @@ pub fn closed_forms() -> Result<Group> {
         let geodesic = (kappa * kappa - 1.0 / (radius * radius)).sqrt();
         Ok(from_circle(&curve, (-normal / radius + geodesic * normal.cross(curve.tangents[0])) / kappa, 1.0 / kappa))
     };
-    let all: [(&str, &dyn Fn(usize, Method) -> Result<f64>); 2] = [("plane", &of_plane), ("sphere", &of_sphere)];
-    for (name, error) in all {
+    for (name, error) in [("plane", &of_plane as Errors<'_>), ("sphere", &of_sphere)] {
         let slope = |method, steps| -> Result<f64> { Ok((error(steps, method)? / error(2 * steps, method)?).log2()) };
         group.between(&format!("{name}: order of the paper's scheme"), slope(Method::Chords, 200)?, [0.9, 1.1]);
         group.at_least(&format!("{name}: order of Runge and Kutta's"), slope(Method::RungeKutta, 40)?, 3.5);
