@@ -142,14 +142,18 @@ pub fn rings() -> Result<Group> {
     group.at_most("cylinder: the ring is level to", largest(found.frames.iter().map(level)), 1e-10);
 
     let cone = surface([[-PI, PI], [-0.9, 5.0]], revolution(|v| [1.0 + 0.4 * v, 0.4, 0.0]))?;
-    let options = Options { max_deviation: 0.05, ..Options::default() };
-    let free = projection::Options { surface_weight: 0.0, ..projection::Options::default() };
+    // The paper's weight of offsets, with which it goes as fast as it is told to.
+    let weights = Weights { offset: 0.1, ..Weights::default() };
+    let weighted = |surface_weight: f64| {
+        let projection = projection::Options { surface_weight, ..projection::Options::default() };
+        Options { max_deviation: 0.05, projection, weights, ..Options::default() }
+    };
     for (speeds, which) in [([1.0], "one way"), ([-1.0], "the other way")] {
         let task = Task { speeds: &speeds, ..on(&ring, &cone) };
-        let kept = run(&task, &options)?;
+        let kept = run(&task, &weighted(1.0))?;
         let is_held = matches!(kept.stop, Stop::Stalled | Stop::Deviation(_));
         holds(&mut group, &format!("cone, {which}, heights kept: it stops by itself"), is_held);
-        let left = run(&task, &Options { projection: free, ..options })?;
+        let left = run(&task, &weighted(0.0))?;
         holds(&mut group, &format!("cone, {which}: the deviation stops it"), matches!(left.stop, Stop::Deviation(_)));
         group.at_most(&format!("cone, {which}: positions until then"), left.frames.len() as f64, 20.0);
         let off = |s: &Snake| largest(s.contacts().iter().map(|c| cone.nearest(*c).point.distance(*c)));

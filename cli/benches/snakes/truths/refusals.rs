@@ -61,8 +61,8 @@ pub fn group() -> Result<Group> {
         is_refused(call(&on(&snake, &plane), &negative), Status::InvalidValue, "options.weights.offset"),
     );
     let none = Weights { tangential: 0.0, offset: 0.0, rotation: 0.0, orthogonal: 0.0 };
-    let still = run(&on(&snake, &plane), &Options { weights: none, ..plain })?;
-    is_so("all weights 0: it stays and says Stalled", still.stop == Stop::Stalled && still.frames.len() == 1);
+    let none = call(&on(&snake, &plane), &Options { weights: none, ..plain });
+    is_so("all weights 0: InvalidValue", is_refused(none, Status::InvalidValue, "options.weights"));
     let mu = projection::Options { mu: 0.0, ..plain.projection };
     let call_mu = call(&on(&snake, &plane), &Options { projection: mu, ..plain });
     is_so("µ of 0: InvalidValue", is_refused(call_mu, Status::InvalidValue, "options.projection.mu"));
