@@ -157,6 +157,11 @@ pub(crate) fn check_finite(name: &str, points: &[DVec3]) -> Result<()> {
     }
 }
 
+/// As [`check_finite`], of one point.
+pub(crate) fn check_finite_point(name: &str, point: DVec3) -> Result<()> {
+    check_finite(name, &[point]).map_err(|error| error.with_place(name))
+}
+
 /// The diagonal of the box that holds `points`, along the axes; 0 without points.
 pub fn diagonal(points: &[DVec3]) -> f64 {
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);

@@ -16,6 +16,10 @@ const MOST_HALVINGS: usize = 30;
 /// A point on the boundary of a mesh has a weight below this for a corner off the boundary.
 const ON_EDGE: f64 = 1e-9;
 
+/// Both ends of a range are one where they are within this part of the surface's size, at so many intervals along them.
+const SEAM: f64 = 1e-9;
+const SEAM_SAMPLES: usize = 16;
+
 /// The nearest point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceFoot {
@@ -143,6 +147,30 @@ impl<F: Fn(f64, f64) -> SurfaceJet + Sync> ParametricSurface<F> {
     /// The surface at two parameters.
     pub fn at(&self, u: f64, v: f64) -> SurfaceJet {
         (self.function)(u, v)
+    }
+
+    /// The parameters that it is over, from the first to the second of each.
+    pub fn ranges(&self) -> [[f64; 2]; 2] {
+        self.ranges
+    }
+
+    /// Whether it goes around in each direction: both ends of the range are one curve, with the same derivatives.
+    pub fn goes_around(&self) -> [bool; 2] {
+        [0, 1].map(|k| {
+            let [low, high] = self.ranges[k];
+            let other = self.ranges[1 - k];
+            let at = |end: f64, part: f64| {
+                let along = other[0] + part * (other[1] - other[0]);
+                if k == 0 { self.at(end, along) } else { self.at(along, end) }
+            };
+            (0..=SEAM_SAMPLES).all(|i| {
+                let part = i as f64 / SEAM_SAMPLES as f64;
+                let (a, b) = (at(low, part), at(high, part));
+                let is_near = |a: DVec3, b: DVec3, size: f64| a.distance(b) <= SEAM * size;
+                is_near(a.point, b.point, self.diagonal)
+                    && (0..2).all(|l| is_near(a.first[l], b.first[l], a.first[l].length().max(b.first[l].length())))
+            })
+        })
     }
 
     /// A mesh of it, as [`patterns::parametric_surface`] lays it out.
@@ -332,6 +360,18 @@ mod tests {
             assert!(foot.point.distance(jet.point) < 1e-14, "{x} {y}: {}", foot.point.distance(jet.point));
             assert!(foot.normal.distance(jet.normal()) < 1e-13 && foot.overhang == 0.0);
         }
+    }
+
+    #[test]
+    fn what_closes_goes_around() {
+        use crate::mesh::surfaces::{cylinder, torus};
+        let pi = std::f64::consts::PI;
+        let around = [-pi, pi];
+        let torus = ParametricSurface::new([around; 2], [9, 9], torus(2.0, 0.7)).unwrap();
+        assert_eq!((torus.goes_around(), torus.ranges()), ([true, true], [around; 2]));
+        let tube = |range| ParametricSurface::new([range, [0.0, 1.0]], [9, 3], cylinder(2.0)).unwrap().goes_around();
+        assert_eq!((tube([0.0, 2.0 * pi]), tube([0.0, 1.9 * pi])), ([true, false], [false, false]));
+        assert_eq!(saddle().goes_around(), [false, false]);
     }
 
     #[test]

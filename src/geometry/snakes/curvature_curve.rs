@@ -15,8 +15,8 @@ use glam::DVec3;
 
 use super::curve_step::{Refusal, State, advance, bend, curvature, directed, geodesic_curvature, is_regular, velocity};
 use crate::error::{Error, Result, Status};
-use crate::mesh::grid::check_finite;
-use crate::mesh::reference::SurfaceJet;
+use crate::mesh::grid::check_finite_point;
+use crate::mesh::reference::{ParametricSurface, SurfaceJet};
 
 /// Steps of a curve at most: points that fit into memory with ease.
 const MOST_STEPS: usize = 10_000_000;
@@ -106,6 +106,25 @@ pub struct CurvatureCurve {
     pub end: End,
 }
 
+/// The curve that begins at the point of the surface nearest to `start`, as [`mesh_curve`](super::mesh_curve::mesh_curve()) does on a
+/// mesh: within the surface's ranges, and over the seam where it goes around.
+///
+/// # Errors
+/// As [`curvature_curve`].
+pub fn surface_curve<F: Fn(f64, f64) -> SurfaceJet + Sync>(
+    surface: &ParametricSurface<F>,
+    start: DVec3,
+    tangent: DVec3,
+    course: &Course<'_>,
+    options: &Options,
+) -> Result<CurvatureCurve> {
+    check_finite_point("start", start)?;
+    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+    let (ranges, around) = (surface.ranges(), surface.goes_around());
+    let ranges = [0, 1].map(|k| if around[k] { everywhere } else { ranges[k] });
+    curvature_curve(&|u, v| surface.at(u, v), ranges, surface.nearest_parameters(start), tangent, course, options)
+}
+
 /// The curve from the point with the parameters `start` in the direction of `tangent`, of which what is along the normal does not
 /// count. `surface` gives the surface over the parameters `ranges[k][0]` to `ranges[k][1]`, which may be infinite: where it goes
 /// around, a curve is to go on over the seam.
@@ -125,7 +144,7 @@ pub fn curvature_curve(
     options: &Options,
 ) -> Result<CurvatureCurve> {
     check(course, options)?;
-    check_finite("tangent", &[tangent])?;
+    check_finite_point("tangent", tangent)?;
     for k in 0..2 {
         let ([low, high], at) = (ranges[k], start[k]);
         if !(low < high) {

@@ -18,7 +18,7 @@ use glam::DVec3;
 use super::drive::{Run, apart, first_velocity, turned};
 use super::{Linkage, Snake};
 use crate::error::{Error, Result, Status, finite};
-use crate::mesh::grid::check_finite;
+use crate::mesh::grid::check_finite_point;
 
 /// How often the interval around an extreme is cut by a third: to 1e-5 of a step, so that the angle is good to 1e-10 of it.
 const THIRDS: usize = 30;
@@ -100,7 +100,7 @@ pub fn cycle(
     check(options)?;
     let velocity = first_velocity(linkage, options.is_reversed)?;
     let mut run = Run::new(linkage, velocity);
-    let end = run.run(options, progress)?;
+    let end = run.run(options, progress);
     Ok(run.motion(end))
 }
 
@@ -121,7 +121,7 @@ impl Motion {
     /// # Errors
     /// None but of control points that are not finite, which frames do not have.
     pub fn ranges_rad(&self) -> Result<[f64; 2]> {
-        let extreme = |k: usize, sign: f64| -> Result<f64> {
+        let extreme = |k: usize, sign: f64| {
             let value = |i: usize| sign * self.angles_rad[i][k];
             let best = (0..self.frames.len()).fold(0, |best, i| if value(i) > value(best) { i } else { best });
             let (count, is_closed) = (self.frames.len(), self.end == End::Closed);
@@ -131,14 +131,11 @@ impl Motion {
                 if !is_closed && other.abs_diff(best) != 1 {
                     continue;
                 }
-                let angle = |t: f64| -> Result<f64> {
-                    let at = self.between(best, other, t)?;
-                    Ok(value(best) + sign * turned(&self.frames[best], &at)[k])
-                };
+                let angle = |t: f64| value(best) + sign * turned(&self.frames[best], &self.between(best, other, t))[k];
                 let (mut low, mut high) = (0.0, 1.0);
                 for _ in 0..THIRDS {
                     let third = (high - low) / 3.0;
-                    let [a, b] = [angle(low + third)?, angle(high - third)?];
+                    let [a, b] = [angle(low + third), angle(high - third)];
                     most = most.max(a).max(b);
                     if a < b {
                         low += third;
@@ -147,18 +144,17 @@ impl Motion {
                     }
                 }
             }
-            Ok(sign * most)
+            sign * most
         };
-        let range = |k: usize| Ok(extreme(k, 1.0)? - extreme(k, -1.0)?);
-        Ok([range(0)?, range(1)?])
+        Ok([0, 1].map(|k| extreme(k, 1.0) - extreme(k, -1.0)))
     }
 
     /// A position on the way from one frame to a neighbour.
-    fn between(&self, from: usize, to: usize, t: f64) -> Result<Vec<DVec3>> {
+    fn between(&self, from: usize, to: usize, t: f64) -> Vec<DVec3> {
         let mut control: Vec<DVec3> =
             self.frames[from].iter().zip(&self.frames[to]).map(|(a, b)| a.lerp(*b, t)).collect();
-        self.linkage.polish(&mut control, None)?;
-        Ok(control)
+        self.linkage.polish(&mut control, &[]);
+        control
     }
 
     /// The snake at a position.
@@ -205,7 +201,7 @@ impl Motion {
             }
             let i = lengths.partition_point(|&length| length <= along).clamp(1, last) - 1;
             let t = ((along - lengths[i]) / (lengths[i + 1] - lengths[i])).clamp(0.0, 1.0);
-            self.between(i, (i + 1) % count, t)
+            Ok(self.between(i, (i + 1) % count, t))
         };
         phases.iter().enumerate().map(at).collect()
     }
@@ -217,7 +213,7 @@ impl Motion {
     pub fn copies(&self, count: usize, phase: f64, shift: f64, offset: DVec3) -> Result<Vec<Vec<DVec3>>> {
         finite("phase", phase)?;
         finite("shift", shift)?;
-        check_finite("offset", &[offset]).map_err(|error| error.with_place("offset"))?;
+        check_finite_point("offset", offset)?;
         let phases: Vec<f64> = (0..count).map(|k| phase + k as f64 * shift).collect();
         let mut copies = self.at_phases(&phases)?;
         for (k, copy) in copies.iter_mut().enumerate() {

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::Linkage;
 use super::cycle::{End, Motion, Options, Progress};
-use super::polish::Level;
+use super::functionals::Row;
 use crate::error::{Error, Result, Status};
 
 /// The drive changes to the other end where that is faster by this part.
@@ -121,32 +121,32 @@ impl<'a> Run<'a> {
         &self.frames[self.frames.len() - 1]
     }
 
-    pub fn run(&mut self, options: &Options, progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Result<End> {
+    pub fn run(&mut self, options: &Options, progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> End {
         for step in 0..options.max_steps {
             if progress(&Progress { step, angles_rad: self.angles[step] }).is_break() {
-                return Ok(End::Cancelled);
+                return End::Cancelled;
             }
             if step > 0 {
                 let mut velocities = self.linkage.velocities(self.at());
                 let Some(velocity) = velocities.pop().filter(|_| velocities.is_empty()) else {
-                    return Ok(End::Freedoms(self.linkage.velocities(self.at()).len()));
+                    return End::Freedoms(self.linkage.velocities(self.at()).len());
                 };
                 let sign = dot(&velocity, &self.velocity).signum();
                 self.velocity = velocity.into_iter().map(|v| sign * v).collect();
             }
-            let Some(next) = self.step(options.step_rad)? else { return Ok(End::Stalled) };
-            if self.is_back(&next)? {
-                return Ok(End::Closed);
+            let Some(next) = self.step(options.step_rad) else { return End::Stalled };
+            if self.is_back(&next) {
+                return End::Closed;
             }
             let turned = turned(self.at(), &next);
             self.angles.push([0, 1].map(|k| self.angles[step][k] + turned[k]));
             self.frames.push(next);
         }
-        Ok(End::Steps)
+        End::Steps
     }
 
     /// The next position; none if no step leads on.
-    fn step(&mut self, step_rad: f64) -> Result<Option<Vec<DVec3>>> {
+    fn step(&mut self, step_rad: f64) -> Option<Vec<DVec3>> {
         let speeds = speeds(self.at(), &self.velocity).map(f64::abs);
         if speeds[1 - self.drive] > (1.0 + HYSTERESIS) * speeds[self.drive] {
             self.drive = 1 - self.drive;
@@ -158,37 +158,38 @@ impl<'a> Run<'a> {
         for _ in 0..HALVINGS {
             let along: Vec<DVec3> = self.at().iter().zip(&self.velocity).map(|(p, v)| *p + time * *v).collect();
             let mut next = along.clone();
-            let residual = self.linkage.polish(&mut next, None)?;
+            let residual = self.linkage.polish(&mut next, &[]);
             let length = apart(&along, self.at());
             let turned = turned(self.at(), &next).iter().fold(0.0_f64, |most, angle| most.max(angle.abs()));
             let is_short = apart(&along, &next) <= TAKEN_BACK * length && turned <= MOST_TURNED * step_rad;
             if residual <= OFF * self.size && is_short {
                 self.residual = self.residual.max(residual);
                 self.longest = self.longest.max(apart(self.at(), &next));
-                return Ok(Some(next));
+                return Some(next);
             }
             time *= 0.5;
         }
-        Ok(None)
+        None
     }
 
     /// Whether the step to `next` leads over the start.
-    fn is_back(&mut self, next: &[DVec3]) -> Result<bool> {
+    fn is_back(&mut self, next: &[DVec3]) -> bool {
         let start = &self.frames[0];
         self.was_away |= apart(start, next) > AWAY * self.longest;
         let ahead = |x: &[DVec3]| dot(x, &self.first_velocity) - dot(start, &self.first_velocity);
         let (before, after) = (ahead(self.at()), ahead(next));
         if !(self.was_away && before < 0.0 && after >= 0.0 && apart(start, next) < NEAR * self.longest) {
-            return Ok(false);
+            return false;
         }
         let t = before / (before - after);
         let mut crossing: Vec<DVec3> = self.at().iter().zip(next).map(|(a, b)| a.lerp(*b, t)).collect();
-        let level = Level { normals: self.first_velocity.clone(), value: dot(start, &self.first_velocity) };
-        let residual = self.linkage.polish(&mut crossing, Some(&level))?;
+        let terms = (0..).zip(self.first_velocity.iter().copied()).collect();
+        let level = Row { terms, right: dot(start, &self.first_velocity), weight: 1.0 };
+        let residual = self.linkage.polish(&mut crossing, &[level]);
         let gap = crossing.iter().zip(start).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         let is_back = residual <= OFF * self.size && gap <= CLOSED * self.size;
         self.closing = is_back.then_some(gap);
-        Ok(is_back)
+        is_back
     }
 
     pub fn motion(self, end: End) -> Motion {

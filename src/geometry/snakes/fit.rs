@@ -27,7 +27,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::polish::polish;
+use super::projection::meet;
 use super::samples::Samples;
 use super::{ArcShape, Distance, Pose, Snake};
 use crate::error::{Error, Result, Status};
@@ -115,7 +115,7 @@ pub fn fit(
         }
     }
     let mut control: Vec<DVec3> = x.chunks_exact(3).map(DVec3::from_slice).collect();
-    let residual = polish(&mut control, &snake.distances(), &|_| true, None)?;
+    let residual = meet(&mut control, false, &snake.distances(), &|_| false, &[]);
     let snake = snake.moved(control)?;
     let deviation = deviation(points, &snake);
     Ok(FittedSnake { snake, deviation, residual, iterations, stop })

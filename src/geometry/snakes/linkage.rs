@@ -6,7 +6,8 @@
 
 use glam::DVec3;
 
-use super::polish::{Level, polish};
+use super::functionals::Row;
+use super::projection::meet;
 use super::{Distance, Snake};
 use crate::error::{Error, Result, Status};
 use crate::linalg::dense::Svd;
@@ -90,9 +91,9 @@ impl Linkage {
         svd.null_space(DEPENDENT).into_iter().map(spread).collect()
     }
 
-    /// Moves free points so that distances hold, and the level if there is one; returns by how much they are off then.
-    pub(super) fn polish(&self, control: &mut Vec<DVec3>, level: Option<&Level>) -> Result<f64> {
-        polish(control, &self.distances, &|i| self.is_free(i), level)
+    /// Moves free points so that distances and conditions hold; returns by how much they are off then.
+    pub(super) fn polish(&self, control: &mut Vec<DVec3>, conditions: &[Row]) -> f64 {
+        meet(control, false, &self.distances, &|i| !self.is_free(i), conditions)
     }
 
     /// The determinant of the Plücker coordinates of the first six hinges of a linkage of six arcs, `u_i` and `k_i × u_i` with

@@ -15,7 +15,7 @@ use super::curvature_curve::{
 use super::curve_step::{Refusal, State, advance, directed, is_regular, velocity};
 use super::face_patch::FacePatch;
 use crate::error::{Error, Result, Status};
-use crate::mesh::grid::check_finite;
+use crate::mesh::grid::check_finite_point;
 use crate::mesh::reference::ReferenceMesh;
 use crate::mesh::{SurfacePoint, TriangleMesh};
 
@@ -57,8 +57,8 @@ pub fn mesh_curve(
     options: &Options,
 ) -> Result<MeshCurve> {
     check(course, options)?;
-    check_finite("start", &[start])?;
-    check_finite("tangent", &[tangent])?;
+    check_finite_point("start", start)?;
+    check_finite_point("tangent", tangent)?;
     let at = near(reference, start)?;
     let mut tracer = Tracer { mesh: reference.mesh(), patches: BTreeMap::new() };
     let patch = tracer.patch(at.triangle as usize);

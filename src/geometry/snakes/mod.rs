@@ -32,7 +32,6 @@ pub mod functionals;
 mod linkage;
 pub mod mesh_curve;
 mod motion;
-mod polish;
 pub mod projection;
 pub mod rails;
 pub mod report;

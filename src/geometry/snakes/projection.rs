@@ -157,7 +157,7 @@ pub fn project(task: &Task<'_>, options: &Options) -> Result<Projected> {
         }
     }
     let most = MOST_NEWTON_STEPS + MOST_DAMPED_STEPS;
-    let mut polished = residuals.polish(&points, most);
+    let mut polished = residuals.polish(&points, most, MET);
     steps += polished.steps;
     if !(polished.residual <= MET * residuals.size) {
         return Err(residuals.stalled(&polished));
@@ -165,7 +165,7 @@ pub fn project(task: &Task<'_>, options: &Options) -> Result<Projected> {
     let mut is_nearest = true;
     if options.is_exact {
         (points, is_nearest) = residuals.nearest(polished.points);
-        polished = residuals.polish(&points, most);
+        polished = residuals.polish(&points, most, MET);
         if !(polished.residual <= MET * residuals.size) {
             return Err(residuals.stalled(&polished));
         }
@@ -182,9 +182,46 @@ pub fn project(task: &Task<'_>, options: &Options) -> Result<Projected> {
     })
 }
 
-/// The conditions.
+/// Moves the control points that are not fixed, by little, so that distances, of neighbours among them, and conditions hold. Returns
+/// by how much they are off at most in the end, which is round-off unless they cannot be met from where the points were.
+pub(super) fn meet(
+    control: &mut Vec<DVec3>,
+    is_closed: bool,
+    distances: &[Distance],
+    is_fixed: &dyn Fn(usize) -> bool,
+    conditions: &[Row],
+) -> f64 {
+    let count = control.len();
+    let residuals = Residuals {
+        target: control,
+        conditions,
+        surface: None,
+        distances: distances.to_vec(),
+        is_fixed: (0..count).map(is_fixed).collect(),
+        positions: positions(count, is_closed),
+        size: around(distances, count),
+    };
+    let met = residuals.polish(control, MOST_NEWTON_STEPS + MOST_DAMPED_STEPS, MET);
+    // One step more takes the residuals to the last bit or two.
+    let polished = residuals.polish(&met.points, 1, 0.0);
+    *control = polished.points;
+    polished.residual
+}
+
+/// The length of a control polygon, of the distances that are edges.
+fn around(distances: &[Distance], count: usize) -> f64 {
+    let edges = distances.iter().filter(|distance| {
+        let [i, j] = distance.points.map(|i| i as usize);
+        (i + 1) % count == j
+    });
+    edges.map(|distance| distance.length).sum()
+}
+
+/// What is to be met.
 struct Residuals<'a> {
-    task: &'a Task<'a>,
+    target: &'a [DVec3],
+    conditions: &'a [Row],
+    surface: Option<Surface<'a>>,
     distances: Vec<Distance>,
     is_fixed: Vec<bool>,
     positions: Vec<u32>,
@@ -244,13 +281,8 @@ impl<'a> Residuals<'a> {
                 return Err(Error::new(Status::InvalidValue, reason).at("surface"));
             }
         }
-        let kept = task.snake.distances();
-        let edges = kept.iter().filter(|distance| {
-            let [i, j] = distance.points.map(|i| i as usize);
-            (i + 1) % count == j
-        });
-        let size = edges.map(|distance| distance.length).sum::<f64>();
-        let mut distances = kept;
+        let mut distances = task.snake.distances();
+        let size = around(&distances, count);
         distances.extend_from_slice(task.distances);
         // A distance of two points that are given is none to meet: round-off of them is none of ours.
         distances.retain(|distance| {
@@ -259,7 +291,9 @@ impl<'a> Residuals<'a> {
                 (i.distance(j) - distance.length).abs() > MET * size
             }
         });
-        Ok(Self { task, distances, is_fixed, positions: positions(task.snake), size })
+        let positions = positions(count, task.snake.is_closed());
+        let (target, conditions, surface) = (task.target, task.conditions, task.surface);
+        Ok(Self { target, conditions, surface, distances, is_fixed, positions, size })
     }
 
     fn distance_residual(points: &[DVec3], distance: &Distance) -> f64 {
@@ -272,12 +306,12 @@ impl<'a> Residuals<'a> {
         let distances = self.distances.iter().map(|distance| Self::distance_residual(points, distance).abs());
         let norm = |row: &Row| row.terms.iter().map(|(_, a)| a.length_squared()).sum::<f64>().sqrt();
         let unit = |row: &Row| if norm(row) > 0.0 { 1.0 / norm(row) } else { 1.0 };
-        let rows = self.task.conditions.iter().map(|row| (unit(row) * row.residual(points)).abs());
+        let rows = self.conditions.iter().map(|row| (unit(row) * row.residual(points)).abs());
         distances.chain(rows).fold(0.0, f64::max)
     }
 
     fn height_residual(&self, points: &[DVec3]) -> f64 {
-        let Some(surface) = &self.task.surface else { return 0.0 };
+        let Some(surface) = &self.surface else { return 0.0 };
         let off = |(i, wanted): (usize, &f64)| {
             if self.is_fixed[i] { 0.0 } else { (height(surface.reference, points[i]) - wanted).abs() }
         };

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::Arc;
 use crate::error::{Error, Result, Status, finite};
 use crate::mesh::fit::Circle;
-use crate::mesh::grid::check_finite;
+use crate::mesh::grid::{check_finite, check_finite_point};
 
 /// By how much the two tangents of an arc may differ in length, as a multiple of the size of the control polygon.
 const UNEQUAL: f64 = 1e-9;
@@ -139,7 +139,7 @@ impl Snake {
         for (j, &torsion) in torsions.iter().enumerate() {
             finite(&format!("torsions[{j}]"), torsion)?;
         }
-        check_finite("pose.point", &[pose.point])?;
+        check_finite_point("pose.point", pose.point)?;
         let none = |reason: &str, place: &str| Error::new(Status::InvalidValue, reason).at(place);
         let mut tangent = pose.tangent.try_normalize();
         let mut normal = tangent.and_then(|tangent| pose.normal.reject_from_normalized(tangent).try_normalize());
@@ -517,6 +517,9 @@ pub(super) mod tests {
         assert_eq!(short.place(), "control[2]");
         let straight = refused(points(&[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]), false);
         assert_eq!((straight.place(), straight.status()), ("control[1]", Status::Degenerate));
+        // There and back again is half a turn, which no arc with a vertex makes.
+        let folded = refused(points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1e-9, 0.0]]), false);
+        assert_eq!((folded.place(), folded.status()), ("control[1]", Status::Degenerate));
         let pose = Pose { point: DVec3::ZERO, tangent: DVec3::X, normal: DVec3::Y };
         let arc = ArcShape { radius: 1.0, length: 1.0 };
         let built = |arcs: &[ArcShape], torsions: &[f64], pose: &Pose| {
@@ -528,6 +531,7 @@ pub(super) mod tests {
         assert_eq!(built(&[arc, arc], &[], &pose), "torsions");
         assert_eq!(built(&[arc, arc], &[f64::INFINITY], &pose), "torsions[0]");
         assert_eq!(built(&[arc], &[], &Pose { tangent: DVec3::ZERO, ..pose }), "pose.tangent");
+        assert_eq!(built(&[arc], &[], &Pose { point: DVec3::NAN, ..pose }), "pose.point");
         assert_eq!(built(&[arc], &[], &Pose { normal: DVec3::X, ..pose }), "pose.normal");
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{ArcShape, Snake};
 use crate::error::{Error, Result, Status};
-use crate::mesh::grid::{Grid, check_finite};
+use crate::mesh::grid::{Grid, check_finite_point};
 
 /// Intervals of an arc at most.
 pub(super) const MOST_INTERVALS: usize = 1 << 16;
@@ -104,7 +104,7 @@ pub fn arc_kinds(arcs: &[ArcShape], tolerance: f64) -> Result<Vec<ArcKind>> {
 
 /// Refuses a direction of a sample that is none.
 pub(super) fn check_direction(name: &str, direction: DVec3) -> Result<DVec3> {
-    check_finite(name, &[direction]).map_err(|error| error.with_place(name))?;
+    check_finite_point(name, direction)?;
     direction
         .try_normalize()
         .ok_or_else(|| Error::new(Status::InvalidValue, format!("expected a direction, found {direction}")).at(name))

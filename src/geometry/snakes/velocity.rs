@@ -72,9 +72,8 @@ pub(super) fn centripetal(snake: &Snake, distances: &[Distance], velocities: &[D
 
 /// Where unknowns are in the order of elimination, so that neighbours are near each other. Around a closed snake those are taken
 /// from both sides in turn.
-pub(super) fn positions(snake: &Snake) -> Vec<u32> {
-    let count = snake.control().len();
-    let place = |i: usize| match (snake.is_closed(), 2 * i < count) {
+pub(super) fn positions(count: usize, is_closed: bool) -> Vec<u32> {
+    let place = |i: usize| match (is_closed, 2 * i < count) {
         (false, _) => i,
         (true, true) => 2 * i,
         (true, false) => 2 * (count - 1 - i) + 1,
@@ -123,7 +122,9 @@ pub(super) fn admissible(snake: &Snake, kept: Kept<'_>, conditions: &[Row], wish
     conditions.iter().for_each(|row| saddle.condition(&entries(row), row.right));
     let weighted = wishes.iter().filter(|row| row.weight > 0.0);
     weighted.for_each(|row| saddle.add_square(&entries(row), row.right, row.weight));
-    let found = saddle.solve(&positions(snake)).map_err(|error| error.with_place("wishes"))?;
+    let found = saddle
+        .solve(&positions(snake.control().len(), snake.is_closed()))
+        .map_err(|error| error.with_place("wishes"))?;
     Ok(Admissible {
         vectors: found.x.chunks_exact(3).map(DVec3::from_slice).collect(),
         residual: found.residual,

@@ -293,3 +293,25 @@ fn a_cube_and_a_fold_come_to_an_end() {
         }
     }
 }
+
+#[test]
+fn a_curve_goes_over_a_seam_without_being_told() {
+    let around = [-PI, PI];
+    let surface = ParametricSurface::new([around; 2], [33, 33], torus(2.0, 0.7)).unwrap();
+    let course = Course { curvature: &|_| 1.8, length: 12.0, side: Side::Left };
+    let options = Options { steps: 600, ..Options::default() };
+    let jet = surface.at(0.1, 0.2);
+    let tangent = jet.normal().cross(DVec3::new(0.3, 0.5, 1.0));
+    let found = surface_curve(&surface, jet.point, tangent, &course, &options).unwrap();
+    let everywhere = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+    let told = curvature_curve(&torus(2.0, 0.7), everywhere, [0.1, 0.2], tangent, &course, &options).unwrap();
+    assert_eq!((found.end, found.points.len()), (End::Length, 601));
+    assert!(found.points.iter().zip(&told.points).all(|(a, b)| a.distance(*b) < 1e-9));
+    // A cylinder ends at its rims.
+    let tube = ParametricSurface::new([around, [0.0, 1.0]], [33, 3], cylinder(1.0)).unwrap();
+    let course = Course { curvature: &|_| 1.0, ..course };
+    let found = surface_curve(&tube, DVec3::new(1.0, 0.0, 0.5), DVec3::new(0.0, 1.0, 0.1), &course, &options).unwrap();
+    assert_eq!(found.end, End::Boundary);
+    let bad = surface_curve(&tube, DVec3::NAN, DVec3::Z, &course, &options);
+    assert_eq!(bad.unwrap_err().place(), "start");
+}

@@ -19,7 +19,7 @@ use glam::DVec3;
 
 use super::{FittedSnake, LEAST_ANGLE, Options, ROUNDS, check, deviation, search, shapes};
 use crate::error::{Error, Result, Status};
-use crate::geometry::snakes::polish::polish;
+use crate::geometry::snakes::projection::meet;
 use crate::geometry::snakes::samples::Samples;
 use crate::geometry::snakes::{ArcShape, Distance, Snake};
 use crate::linalg::gauss_newton::{Progress, Residuals, Stop, minimise};
@@ -64,7 +64,7 @@ pub fn fit_closed(
         }
     }
     let mut control: Vec<DVec3> = x.chunks_exact(3).map(DVec3::from_slice).collect();
-    polish(&mut control, &problem.edges, &|_| true, None)?;
+    meet(&mut control, true, &problem.edges, &|_| false, &[]);
     let arcs = problem.arcs(&control)?;
     let mean = samples.length() / arc_count as f64;
     if let Some(j) = arcs.iter().position(|arc| !(arc.length < UNEVEN * mean && arc.length > mean / UNEVEN)) {

@@ -53,10 +53,10 @@ impl Residuals<'_> {
             let row = self.free(distance_entries(distance, direction));
             saddle.condition(&row, -Self::distance_residual(points, distance));
         }
-        for row in self.task.conditions {
+        for row in self.conditions {
             saddle.condition(&self.free(entries(row)), -row.residual(points));
         }
-        if let Some(surface) = self.task.surface.as_ref().filter(|_| on_surface) {
+        if let Some(surface) = self.surface.as_ref().filter(|_| on_surface) {
             for (i, wanted) in surface.heights.iter().enumerate().filter(|(i, _)| !self.is_fixed[*i]) {
                 let foot = surface.reference.nearest(points[i]);
                 let row = Row { terms: vec![(i as u32, foot.normal)], right: 0.0, weight: 1.0 };
@@ -69,20 +69,21 @@ impl Residuals<'_> {
     /// The sum of the squares of all residuals.
     fn squares(&self, points: &[DVec3], on_surface: bool) -> f64 {
         let distances = self.distances.iter().map(|distance| Self::distance_residual(points, distance).powi(2));
-        let rows = self.task.conditions.iter().map(|row| row.residual(points).powi(2));
-        let heights = self.task.surface.iter().filter(|_| on_surface).flat_map(|surface| {
+        let rows = self.conditions.iter().map(|row| row.residual(points).powi(2));
+        let heights = self.surface.iter().filter(|_| on_surface).flat_map(|surface| {
             let off = |(i, wanted): (usize, &f64)| (height(surface.reference, points[i]) - wanted).powi(2);
             surface.heights.iter().enumerate().filter(|(i, _)| !self.is_fixed[*i]).map(off)
         });
         distances.chain(rows).sum::<f64>() + heights.sum::<f64>()
     }
 
-    /// Newton's steps, shortest each, or parts of them; where none lowers the squares of the residuals, damped ones.
-    pub(super) fn polish(&self, start: &[DVec3], most: usize) -> Polished {
+    /// Newton's steps, shortest each, or parts of them, until residuals are at most `met` of the size; where none lowers the squares of
+    /// the residuals, damped ones.
+    pub(super) fn polish(&self, start: &[DVec3], most: usize, met: f64) -> Polished {
         let mut at = Polished { points: start.to_vec(), residual: self.residual(start), steps: 0 };
         let mut squares = self.squares(start, false);
         let mut damping: Option<f64> = None;
-        while at.residual > MET * self.size && at.steps < most {
+        while at.residual > met * self.size && at.steps < most {
             let Some(saddle) = self.linearised(&at.points, false) else { break };
             let found = match damping {
                 None => saddle.solve(&self.positions),
@@ -143,13 +144,13 @@ impl Residuals<'_> {
     /// Steps `d` that keep distances and conditions and lower `w Σ (height − target height)² + µ ‖x − y‖²`, as long as the
     /// distances allow it.
     pub(super) fn settle(&self, mut points: Vec<DVec3>, options: &Options) -> Vec<DVec3> {
-        let Some(surface) = self.task.surface.filter(|_| options.surface_weight > 0.0) else { return points };
+        let Some(surface) = self.surface.filter(|_| options.surface_weight > 0.0) else { return points };
         for _ in 0..MOST_SETTLING_STEPS {
             let Some(mut saddle) = self.linearised(&points, false) else { break };
             // The squares of `linearised` have the weight 1 already: of what is added that is the part of µ.
             let scale = 1.0 / options.mu;
             for (i, wanted) in surface.heights.iter().enumerate().filter(|(i, _)| !self.is_fixed[*i]) {
-                let pull = self.task.target[i] - points[i];
+                let pull = self.target[i] - points[i];
                 (0..3).for_each(|k| saddle.add_first((3 * i + k) as u32, pull[k]));
                 let foot = surface.reference.nearest(points[i]);
                 let row = Row { terms: vec![(i as u32, foot.normal)], right: 0.0, weight: 1.0 };
@@ -200,7 +201,7 @@ impl Residuals<'_> {
         let mut multipliers: Option<Vec<f64>> = None;
         for _ in 0..MOST_EXACT_STEPS {
             let Some(mut saddle) = self.linearised(&points, false) else { break };
-            for (i, (p, y)) in points.iter().zip(self.task.target).enumerate() {
+            for (i, (p, y)) in points.iter().zip(self.target).enumerate() {
                 let pull = if self.is_fixed[i] { DVec3::ZERO } else { *y - *p };
                 (0..3).for_each(|k| saddle.add_first((3 * i + k) as u32, pull[k]));
             }

@@ -38,7 +38,7 @@ impl Soft<'_> {
     fn points(&self, x: &[f64]) -> Vec<DVec3> {
         let size = self.residuals.size;
         let moved = |(i, way): (usize, &[f64])| {
-            let from = self.residuals.task.target[i];
+            let from = self.residuals.target[i];
             if self.residuals.is_fixed[i] { from } else { from + size * DVec3::from_slice(way) }
         };
         x.chunks_exact(3).enumerate().map(moved).collect()
@@ -47,7 +47,7 @@ impl Soft<'_> {
     /// Calls `take` with the coefficients and the residual of every term; those of heights need the foot.
     fn each(&self, x: &[f64], mut take: impl FnMut(Row, f64)) {
         let points = self.points(x);
-        let (task, size) = (self.residuals.task, self.residuals.size);
+        let size = self.residuals.size;
         for distance in &self.residuals.distances {
             let [i, j] = distance.points;
             let apart = points[i as usize] - points[j as usize];
@@ -56,13 +56,15 @@ impl Soft<'_> {
             let row = Row { terms: vec![(i, direction), (j, -direction)], right: 0.0, weight: 1.0 };
             take(row, (length - distance.length) / size);
         }
-        for row in task.conditions {
+        for row in self.residuals.conditions {
             let norm = row.terms.iter().map(|(_, a)| a.length_squared()).sum::<f64>().sqrt();
             let scale = if norm > 0.0 { 1.0 / norm } else { 1.0 };
             let terms = row.terms.iter().map(|&(i, a)| (i, scale * a)).collect();
             take(Row { terms, right: 0.0, weight: 1.0 }, scale * row.residual(&points) / size);
         }
-        let Some(surface) = task.surface.as_ref().filter(|_| self.options.surface_weight > 0.0) else { return };
+        let Some(surface) = self.residuals.surface.as_ref().filter(|_| self.options.surface_weight > 0.0) else {
+            return;
+        };
         let weight = self.options.surface_weight.sqrt();
         for (i, wanted) in surface.heights.iter().enumerate() {
             let foot = surface.reference.nearest(points[i]);

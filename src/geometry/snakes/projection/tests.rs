@@ -138,3 +138,32 @@ fn what_cannot_be_is_refused() {
     let bad = Options { mu: 0.0, ..Options::default() };
     assert_eq!(super::project(&Task::new(&snake, p), &bad).unwrap_err().place(), "options.mu");
 }
+
+#[test]
+fn distances_are_met_and_points_hardly_move() {
+    let mut random = Random(5);
+    for count in [1, 4, 12] {
+        let snake = open_snake(count, count as u64);
+        let distances = snake.distances();
+        for noise in [0.0, 0.005, 0.05] {
+            let disturbed: Vec<DVec3> = snake.control().iter().map(|p| *p + noise * random.vector()).collect();
+            let mut control = disturbed.clone();
+            let residual = meet(&mut control, false, &distances, &|_| false, &[]);
+            assert_eq!(residual, snake.moved(control.clone()).unwrap().residual());
+            assert!(residual < 1e-13 * snake.length(), "{residual}");
+            let moved = control.iter().zip(&disturbed).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+            assert!(moved <= 4.0 * noise + 1e-14, "{moved} of {noise}");
+        }
+        // Ends that are held stay, and what cannot be met says so.
+        let mut control = snake.control().to_vec();
+        control[0] += DVec3::new(0.0, 0.0, 0.01);
+        let first = control[0];
+        assert!(meet(&mut control, false, &distances, &|i| i == 0, &[]) < 1e-13 * snake.length());
+        assert_eq!(control[0], first);
+        control[0] += DVec3::new(30.0, 0.0, 0.0);
+        let held = control.clone();
+        assert!(meet(&mut control, false, &distances, &|i| i != 1, &[]) > 1.0);
+        assert!(control.iter().all(|point| point.is_finite()));
+        assert!((0..control.len()).all(|i| i == 1 || control[i] == held[i]));
+    }
+}

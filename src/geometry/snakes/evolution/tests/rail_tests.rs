@@ -201,3 +201,18 @@ fn a_rail_that_turns_along_the_snake_ends_the_run() {
 fn weights_with_offset() -> Weights {
     Weights { rotation: 10.0, ..Weights::default() }
 }
+
+#[test]
+fn a_snake_pulled_straight_stops_and_keeps_its_frames() {
+    // One end stays, the other runs away on a line that is longer than the snake can follow.
+    let snake = open_snake(6, 4);
+    let [first, last] = [snake.control()[0], snake.control()[7]];
+    let line = Spline::through(&[last, last + 4.0 * (last - first)], false).unwrap();
+    let rails = [Rail::Driven { point: 7, curve: &line, start: 0.0, speed: 0.1 }];
+    let task = Task { fixed: &[0], rails: &rails, ..Task::new(&snake) };
+    let found = run(&task, &Options { step: 0.2, max_steps: 500, weights: weights(), ..Options::default() });
+    assert_eq!(found.stop, Stop::Stalled);
+    let reach = found.last().snake.control()[7].distance(first);
+    assert!(found.frames.len() > 3 && reach > 1.3 * first.distance(last));
+    assert!(found.frames.iter().all(|frame| frame.snake.residual() < 1e-12 && frame.snake.control()[0] == first));
+}
