@@ -6,6 +6,7 @@ mod engine;
 mod exploration;
 mod program;
 mod ruled;
+mod snakes;
 mod speed;
 
 use anyhow::{Context, Result, bail};
@@ -27,6 +28,8 @@ pub enum Area {
     Exploration,
     /// Ruled free forms: ground truths, strips of five surfaces, the paper's figures with pictures, seconds per step for a large mesh.
     Ruled,
+    /// Circular arc snakes: ground truths, the linkage that comes back, milliseconds per step, the paper's figures with pictures.
+    Snakes,
 }
 
 /// Measures and prints; fails if a figure is short of its target.
@@ -39,6 +42,7 @@ pub fn run(area: Area, reuse: bool, repetitions: Option<usize>) -> Result<()> {
         Area::Canal => canal::show(&mut figures)?,
         Area::Bindings => bindings::show(&mut figures)?,
         Area::Ruled => ruled::show(&mut figures)?,
+        Area::Snakes => snakes::show(&mut figures)?,
     }
     println!();
     if figures.short.is_empty() {
@@ -94,6 +98,9 @@ impl Figures {
         let value = measure["value"].as_f64().with_context(|| format!("expected a number as value of {name}"))?;
         match (measure["least"].as_f64(), measure["most"].as_f64()) {
             (None, None) => self.plain(name, &number(value)),
+            (Some(least), Some(most)) if least == most => {
+                self.line(name, &number(value), &number(least), value == least);
+            }
             (least, most) => {
                 least.into_iter().for_each(|least| self.at_least(name, value, least));
                 most.into_iter().for_each(|most| self.at_most(name, value, most));
