@@ -30,7 +30,7 @@
 //!         ▼                                  │ recipes: "planarise these faces"
 //!    constraints ─ per type: projection ·    │
 //!         │        rows · scalars · violation│
-//!         ▼                               geometry ─ canal: super-canal surfaces
+//!         ▼                               geometry ─ canal · ruled · snakes
 //!    linalg ─ AᵀA, ordering, factor, solve   ▲
 //!         │                               mesh ─ files, topology, measures, grids, curves
 //!         ▼

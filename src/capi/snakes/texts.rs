@@ -71,5 +71,5 @@ pub extern "C" fn shapeop_snakeKindsCsv(snake: *mut ShapeOpSnake, frame: c_int, 
 /// The same arcs as a DXF drawing, a layer for each kind.
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_snakeArcsDxf(snake: *mut ShapeOpSnake, frame: c_int, tolerance: f64) -> *const c_char {
-    shown(snake, |draft| list(draft, frame, tolerance)?.to_dxf())
+    shown(snake, |draft| Ok(list(draft, frame, tolerance)?.to_dxf()))
 }

@@ -124,7 +124,7 @@ pub fn write(
     }
     output.text("arcs", ".arcs.json", &list.to_json())?;
     output.text("arc table", ".arcs.csv", &list.to_csv())?;
-    output.text("drawing", ".arcs.dxf", &list.to_dxf()?)?;
+    output.text("drawing", ".arcs.dxf", &list.to_dxf())?;
     output.text("parts", ".parts.csv", &list.kinds_csv())?;
     output.text("start", ".start.json", &file::to_json(&made.snake))?;
     let last = snakes.last().context("the start is always there")?;

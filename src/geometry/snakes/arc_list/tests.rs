@@ -1,3 +1,6 @@
+use dxf::Drawing;
+use dxf::entities::{Entity, EntityType};
+
 use super::*;
 use crate::geometry::random::Random;
 use crate::geometry::snakes::Pose;
@@ -57,7 +60,7 @@ fn tables_say_where_arcs_are_and_what_is_to_be_made() {
 }
 
 /// The points at the beginning, the middle and the end of the arcs of a drawing, as its format says they are found.
-fn drawn(text: &str) -> Vec<(String, [DVec3; 3])> {
+fn read(text: &str) -> Vec<(String, [DVec3; 3])> {
     let drawing = Drawing::load(&mut text.as_bytes()).unwrap();
     let point = |entity: &Entity| {
         let EntityType::Arc(arc) = &entity.specific else { panic!("no arc") };
@@ -90,28 +93,16 @@ fn a_drawing_has_the_arcs() {
         lists.push(ArcList::new(&snake, &[snake.control().to_vec()], &[0.0], 0.0).unwrap());
     }
     for list in lists {
-        let found = drawn(&list.to_dxf().unwrap());
+        let found = read(&list.to_dxf());
         let arcs: Vec<(usize, usize, Arc)> = list.arcs().collect();
         assert_eq!(found.len(), arcs.len());
         for ((layer, points), (_, j, arc)) in found.iter().zip(&arcs) {
             assert_eq!(*layer, format!("kind-{}", list.kind_of()[*j]));
             for (point, part) in points.iter().zip([0.0, 0.5, 1.0]) {
-                assert!(point.distance(arc.point(part)) < 1e-10, "{point} {}", arc.point(part));
+                assert!(point.distance(arc.point(part)) < 1e-13, "{point} {}", arc.point(part));
             }
         }
     }
-}
-
-#[test]
-fn a_drawing_says_neither_when_nor_by_whom_it_was_made() {
-    let text = list().to_dxf().unwrap();
-    let lines: Vec<&str> = text.lines().map(str::trim).collect();
-    for name in ["$TDCREATE", "$TDUPDATE"] {
-        let at = lines.iter().position(|line| *line == name).unwrap();
-        assert_eq!(lines[at + 1..at + 3], ["40", "2415021.0"]);
-    }
-    assert!(!text.contains("GUID") && !text.contains("LASTSAVEDBY"));
-    assert_eq!(list().to_dxf().unwrap(), text);
 }
 
 #[test]
