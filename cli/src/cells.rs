@@ -62,8 +62,7 @@ impl Cells {
         let values = self.constraints.iter().map(largest).collect();
         let (on, handles) = (self.on, Vec::new());
         let overlay = Overlay::default();
-        let mut panel =
-            Panel { mesh, edges, title, values, on, pointed_at: None, caption: String::new(), handles, overlay };
+        let mut panel = Panel { edges, values, on, handles, overlay, ..Panel::new(mesh, title) };
         if let Some((index, words)) = worst_of(&panel) {
             (panel.pointed_at, panel.caption) = (Some(index), words);
         }

@@ -55,6 +55,23 @@ pub struct Panel<'a> {
     pub overlay: Overlay,
 }
 
+impl<'a> Panel<'a> {
+    /// A mesh without colours.
+    pub fn new(mesh: &'a Mesh, title: String) -> Self {
+        Self {
+            mesh,
+            edges: &[],
+            title,
+            values: Vec::new(),
+            on: On::Faces,
+            pointed_at: None,
+            caption: String::new(),
+            handles: Vec::new(),
+            overlay: Overlay::default(),
+        }
+    }
+}
+
 /// Curves over a mesh, and faces that stand out.
 #[derive(Clone, Debug, Default)]
 pub struct Overlay {
@@ -70,6 +87,16 @@ pub struct Overlay {
     pub face_colours: Vec<Rgb>,
     /// Draws no edges of faces: for meshes whose faces mean nothing.
     pub is_smooth: bool,
+}
+
+/// Of meshes to draw on.
+const PALE: Rgb = [0.93, 0.935, 0.94];
+
+impl Overlay {
+    /// Lines on a mesh that is pale and without edges.
+    pub fn on_pale(mesh: &Mesh, strokes: Vec<Stroke>) -> Self {
+        Self { strokes, face_colours: vec![PALE; mesh.faces.len()], is_smooth: true, ..Self::default() }
+    }
 }
 
 /// A line on a mesh.
@@ -538,17 +565,7 @@ mod tests {
     fn the_legend_ends_above_the_lower_edge_however_flat_the_meshes_are() {
         let points = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [9.0, 1.0, 0.0], [0.0, 1.0, 0.0]].map(DVec3::from).to_vec();
         let mesh = Mesh { points, faces: vec![vec![0, 1, 2, 3]] };
-        let panel = || Panel {
-            mesh: &mesh,
-            edges: &[],
-            title: String::new(),
-            values: vec![0.5],
-            on: On::Faces,
-            pointed_at: None,
-            caption: String::new(),
-            handles: Vec::new(),
-            overlay: Overlay::default(),
-        };
+        let panel = || Panel { values: vec![0.5], ..Panel::new(&mesh, String::new()) };
         let (title, range, mark, end_words) = (String::new(), [0.0, 1.0], None, ["", ""]);
         let scale = Some(Scale { title, unit: "%", range, is_diverging: false, mark, end_words });
         let panels = (0..3).map(|_| panel()).collect();

@@ -5,7 +5,7 @@ use shapeop::mesh::measure::{self, Spread};
 
 use crate::args::Colour;
 use crate::colours::Scale;
-use crate::picture::{On, Overlay, Panel};
+use crate::picture::{On, Panel};
 use crate::table::percent;
 
 /// Planarity and circularity are shown from 0 to this, in percent; beyond it everything is equally bad.
@@ -66,17 +66,7 @@ impl<'a> Shown<'a> {
             }
             Colour::None => (On::Faces, Vec::new()),
         };
-        let mut panel = Panel {
-            mesh,
-            edges,
-            title,
-            values,
-            on,
-            pointed_at: None,
-            caption: String::new(),
-            handles: Vec::new(),
-            overlay: Overlay::default(),
-        };
+        let mut panel = Panel { edges, values, on, ..Panel::new(mesh, title) };
         if let Some((index, words)) = worst_of(&panel) {
             (panel.pointed_at, panel.caption) = (Some(index), words);
         }

@@ -96,6 +96,6 @@ fn a_linkage_moves_around() {
         let singular = made(&[1.0; 6], &[0.5 * PI; 6], &[1.2; 5]);
         assert_eq!(shapeop_snakeDeterminant(singular.0, &mut determinant), SO_SUCCESS);
         assert!(determinant.abs() < 1e-9);
-        refused(shapeop_snakeCycle(singular.0, ptr::null(), None, none, &mut found), SO_DEGENERATE, "snake");
+        refused(shapeop_snakeCycle(singular.0, ptr::null(), None, none, &mut found), SO_SINGULAR, "snake");
     }
 }

@@ -91,7 +91,7 @@ pub struct Motion {
 /// # Errors
 /// Options out of their ranges (`options.step_rad`, `options.max_steps`). A linkage that cannot move, or in several independent
 /// ways as one of more than six arcs (`linkage`, status `InvalidValue`); one of six arcs that is in a singular position (`linkage`,
-/// status `Degenerate`).
+/// status `Singular`).
 pub fn cycle(
     linkage: &Linkage,
     options: &Options,

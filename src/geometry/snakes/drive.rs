@@ -39,7 +39,7 @@ pub(super) fn first_velocity(linkage: &Linkage, is_reversed: bool) -> Result<Vec
         _ => {
             let reason = format!("expected a linkage with one freedom, found {found}");
             let is_singular = arcs == 6 && found > 1;
-            let status = if is_singular { Status::Degenerate } else { Status::InvalidValue };
+            let status = if is_singular { Status::Singular } else { Status::InvalidValue };
             let reason = if is_singular { format!("{reason}: its position is singular") } else { reason };
             return Err(Error::new(status, reason).at("linkage"));
         }

@@ -242,8 +242,13 @@ impl Fit {
         let arcs = snake.shapes().iter().enumerate().map(arc).collect();
         Self { distances, arcs, ends: samples.ends(), nearness: nearness.sqrt() }
     }
+}
 
-    /// Calls `add` with each residual, and the control points that it depends on with its derivatives.
+impl Terms for Fit {
+    fn point_count(&self) -> usize {
+        self.arcs.len() + 2
+    }
+
     fn visit(&self, x: &[f64], mut add: impl FnMut(f64, &[(usize, DVec3)])) {
         let at = |i: usize| DVec3::from_slice(&x[3 * i..3 * i + 3]);
         for Distance { points: [i, j], length } in &self.distances {
@@ -278,9 +283,17 @@ impl Fit {
     }
 }
 
-impl Residuals for Fit {
+/// A sum of squares in control points, of which each depends on three at most.
+trait Terms {
+    fn point_count(&self) -> usize;
+
+    /// Calls `add` with each residual, and the control points that it depends on with its derivatives.
+    fn visit(&self, x: &[f64], add: impl FnMut(f64, &[(usize, DVec3)]));
+}
+
+impl<T: Terms> Residuals for T {
     fn unknown_count(&self) -> usize {
-        3 * (self.arcs.len() + 2)
+        3 * self.point_count()
     }
 
     fn value(&mut self, x: &[f64]) -> f64 {

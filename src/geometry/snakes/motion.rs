@@ -174,7 +174,7 @@ impl<'a> Motion<'a> {
         let mut wishes = self.wishes(snake)?;
         let velocity = self.admissible(snake, None, &conditions, &mut wishes)?;
         let mut rails: Vec<f64> = runs.iter().map(|run| run.0).collect();
-        for (k, rail) in self.task.rails.iter().enumerate().filter(|(_, rail)| rail.point().is_none()) {
+        for (k, rail) in self.gliding() {
             rails[k] = self.glide(state, rail, k, &velocity.vectors)[1];
         }
         Ok(Rates { velocity, rails })
@@ -319,15 +319,14 @@ impl<'a> Motion<'a> {
                 target[point as usize] = rail.curve().point(rails[k].parameter);
             }
         }
-        let moved = state.snake.moved(target.clone())?;
-        let mut near = moved;
+        let mut near = state.snake.moved(target.clone())?;
         let mut round = 0;
         let way = |(a, b): (&DVec3, &DVec3)| a.distance(*b);
         let longest = state.snake.control().iter().zip(&target).map(way).fold(0.0, f64::max);
         let reach = (REACH * longest).max(f64::MIN_POSITIVE);
         let (projected, incongruence) = loop {
             let mut conditions = Vec::new();
-            for (k, rail) in self.task.rails.iter().enumerate().filter(|(_, rail)| rail.point().is_none()) {
+            for (k, rail) in self.gliding() {
                 let halted = |halt| Failure::Rail(k, halt);
                 rails[k] = meet(&near, rail.curve(), rails[k]).map_err(halted)?;
                 let direction = across(&near, rail.curve(), rails[k]).map_err(halted)?;
@@ -337,8 +336,7 @@ impl<'a> Motion<'a> {
             }
             let (found, incongruence) = self.project(&target, &conditions, reach)?;
             round += 1;
-            let misses = conditions.iter().map(|_| ()).count() > 0
-                && self.misses(&found.snake, &mut rails)? > MEETS * self.length;
+            let misses = self.misses(&found.snake, &mut rails)? > MEETS * self.length;
             if !misses || round == MOST_ROUNDS {
                 break (found, incongruence);
             }
@@ -349,10 +347,15 @@ impl<'a> Motion<'a> {
         Ok(Step { state: State { snake: projected.snake.clone(), rails }, projected, incongruence, taken_back })
     }
 
+    /// The rails that the snake glides on.
+    fn gliding(&self) -> impl Iterator<Item = (usize, &'a Rail<'a>)> {
+        self.task.rails.iter().enumerate().filter(|(_, rail)| rail.point().is_none())
+    }
+
     /// By how much a snake misses gliding rails at most. `rails` become where they are nearest.
     fn misses(&self, snake: &Snake, rails: &mut [OnRail]) -> std::result::Result<f64, Failure> {
         let mut most = 0.0_f64;
-        for (k, rail) in self.task.rails.iter().enumerate().filter(|(_, rail)| rail.point().is_none()) {
+        for (k, rail) in self.gliding() {
             rails[k] = meet(snake, rail.curve(), rails[k]).map_err(|halt| Failure::Rail(k, halt))?;
             let [point, ..] = arc_point(snake, rails[k].arc as usize, rails[k].angle_rad);
             most = most.max(point.of(snake.control()).distance(rail.curve().point(rails[k].parameter)));

@@ -14,7 +14,7 @@ use anyhow::Result;
 use glam::DVec3;
 use shapeop::mesh::Mesh;
 use shapeop_cli::colours::Scale;
-use shapeop_cli::picture::{On, Overlay, Panel, Picture};
+use shapeop_cli::picture::{On, Panel, Picture};
 use shapeop_cli::raster;
 
 use crate::group::Group;
@@ -81,15 +81,12 @@ impl Kept {
 
     fn panel<'a>(&'a self, edges: &'a [[u32; 2]]) -> Panel<'a> {
         Panel {
-            mesh: &self.mesh,
             edges,
-            title: self.title.clone(),
             values: self.values.clone(),
             on: self.on,
-            pointed_at: None,
             caption: self.caption.clone(),
             handles: self.handles.clone(),
-            overlay: Overlay::default(),
+            ..Panel::new(&self.mesh, self.title.clone())
         }
     }
 

@@ -114,11 +114,7 @@ pub fn group() -> Result<Group> {
     let linkage = Linkage::new(singular)?;
     group.at_most("all torsions 1.2, angle π/2: the same, ours", linkage.determinant()?.abs(), 1e-9);
     let call = cycle(&linkage, &Options::default(), go_on);
-    holds(
-        &mut group,
-        "all torsions 1.2, angle π/2: refused, degenerate",
-        is_refused(call, Status::Degenerate, "linkage"),
-    );
+    holds(&mut group, "all torsions 1.2, angle π/2: refused, singular", is_refused(call, Status::Singular, "linkage"));
     let regular = Linkage::new(snake)?;
     group.at_most(
         "determinants of the first, unequal by",

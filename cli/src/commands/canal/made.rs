@@ -17,7 +17,7 @@ use crate::args::canal::CanalOutputArgs;
 use crate::commands::recipe::file_name;
 use crate::curve_file::{Curve, CurveInReport};
 use crate::output::{Output, say};
-use crate::picture::{On, Overlay, Panel, Picture};
+use crate::picture::{Overlay, Panel, Picture};
 use crate::table::{aligned, number};
 
 /// Residuals above this are told as a warning: round-off stays far below.
@@ -278,15 +278,10 @@ fn picture(title: String, family: &str, mesh: &Mesh, overlay: Overlay, measures:
         format!("{} faces in orange fold, cross themselves or have shrunk", overlay.marked.len())
     };
     let panel = Panel {
-        mesh,
-        edges: &[],
-        title: format!("{family}, {} faces", mesh.faces.len()),
-        values: Vec::new(),
-        on: On::Faces,
         pointed_at: is_bad.then_some(measures.concyclicity.face),
         caption,
-        handles: Vec::new(),
         overlay,
+        ..Panel::new(mesh, format!("{family}, {} faces", mesh.faces.len()))
     };
     let subtitle = format!(
         "planarity at worst {}, concyclicity at worst {}",

@@ -20,7 +20,7 @@ use crate::Ending;
 use crate::args::canal::{AxesKind, PanelsArgs, Unit};
 use crate::commands::recipe::file_name;
 use crate::output::{Output, say};
-use crate::picture::{On, Overlay, Panel, Picture};
+use crate::picture::{Overlay, Panel, Picture};
 use crate::progress::{Progress, catch_interrupts, is_interrupted};
 use crate::table::{aligned, number};
 
@@ -82,19 +82,13 @@ fn component(args: &PanelsArgs, name: &std::path::Path, family: &str, net: &Net,
     if output.wants_pictures() {
         let title = format!("{}: panels", file_name(name));
         let panel = Panel {
-            mesh: &mesh,
-            edges: &[],
-            title: format!("{family}, {} panels, {} beams", flat.len(), parts.beams.len()),
-            values: Vec::new(),
-            on: On::Faces,
-            pointed_at: None,
             caption: format!(
                 "node axes: the depths of beams of height {} differ by at most {}",
                 number(height),
                 number(gap)
             ),
-            handles: Vec::new(),
             overlay: Overlay { thin_curves: axes_drawn(grid, &axes, height), ..Overlay::default() },
+            ..Panel::new(&mesh, format!("{family}, {} panels, {} beams", flat.len(), parts.beams.len()))
         };
         let picture = Picture {
             title,

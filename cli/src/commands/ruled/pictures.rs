@@ -16,7 +16,7 @@ use shapeop::mesh::{Mesh, SurfacePoint, TriangleMesh};
 use super::measures::counted;
 use super::report::BoundariesInReport;
 use crate::colours::{Rgb, Scale};
-use crate::picture::{On, Overlay, Panel, Picture, Stroke};
+use crate::picture::{Overlay, Panel, Picture, Stroke};
 use crate::shown::round_up;
 use crate::table::{number, percent};
 use shapeop_cli::camera::Camera;
@@ -33,7 +33,6 @@ const SHADES: [Rgb; 2] = [[0.955, 0.905, 0.800], [0.690, 0.790, 0.850]];
 const WOODS: [Rgb; 2] = [[0.900, 0.770, 0.580], [0.820, 0.660, 0.450]];
 /// Of stripes: dark, light.
 const STRIPES: [Rgb; 2] = [[0.13, 0.14, 0.18], [0.97, 0.97, 0.95]];
-const MESH: Rgb = [0.93, 0.935, 0.94];
 
 /// Asymptotic curves are about so many diagonals apart.
 const SPACING: f64 = 1.0 / 22.0;
@@ -67,22 +66,7 @@ impl<'a> View<'a> {
 }
 
 fn panel(mesh: &Mesh, title: String, overlay: Overlay) -> Panel<'_> {
-    Panel {
-        mesh,
-        edges: &[],
-        title,
-        values: Vec::new(),
-        on: On::Faces,
-        pointed_at: None,
-        caption: String::new(),
-        handles: Vec::new(),
-        overlay,
-    }
-}
-
-/// The mesh pale and without edges, to draw on.
-fn pale(mesh: &Mesh, strokes: Vec<Stroke>) -> Overlay {
-    Overlay { strokes, face_colours: vec![MESH; mesh.faces.len()], is_smooth: true, ..Overlay::default() }
+    Panel { overlay, ..Panel::new(mesh, title) }
 }
 
 fn strokes<'a>(
@@ -171,7 +155,7 @@ impl Taken {
 /// The asymptotic curves on the mesh, those that rulings follow dark.
 pub fn field(view: &View<'_>, curves: &Families, family: usize) -> String {
     let lines = strokes(&curves[1], OTHER_FAMILY, 1.1).chain(strokes(&curves[0], INK, 1.7)).collect();
-    let overlay = pale(view.mesh, lines);
+    let overlay = Overlay::on_pale(view.mesh, lines);
     let title = format!("family {family} dark: rulings follow it; family {} orange", 1 - family.min(1));
     let subtitle = "asymptotic curves: along them the surface bends to neither side".to_owned();
     view.drawn("the field of asymptotic directions", subtitle, panel(view.mesh, title, overlay), None)
@@ -188,7 +172,7 @@ pub fn boundaries(
         .chain(strokes(beyond, BEYOND, 1.6))
         .chain(strokes(on, BOUNDARY, 2.6))
         .collect();
-    let overlay = pale(view.mesh, lines);
+    let overlay = Overlay::on_pale(view.mesh, lines);
     let title = if curves.is_empty() {
         "boundaries as drawn"
     } else {

@@ -15,7 +15,7 @@ use super::report::Report;
 use crate::animation::Animation;
 use crate::colours::{Rgb, Scale};
 use crate::commands::recipe::file_name;
-use crate::picture::{On, Overlay, Panel, Picture, Stroke};
+use crate::picture::{Overlay, Panel, Picture, Stroke};
 use crate::raster;
 use crate::shown::round_up;
 use crate::table::{number, percent};
@@ -27,7 +27,6 @@ const STRIPS: [Rgb; 2] = [[0.975, 0.880, 0.640], [0.700, 0.795, 0.900]];
 const PIPES: [Rgb; 2] = [[0.960, 0.720, 0.250], [0.965, 0.965, 0.950]];
 /// Of coverings, in turns from position to position.
 const WOODS: [Rgb; 2] = [[0.900, 0.770, 0.580], [0.820, 0.660, 0.450]];
-const MESH: Rgb = [0.93, 0.935, 0.94];
 const RAIL: &str = "#b3277d";
 const FAINT_LINE: &str = "#8a94a3";
 
@@ -74,22 +73,7 @@ fn spread_around(count: usize, most: usize) -> Vec<usize> {
 }
 
 fn panel(mesh: &Mesh, title: String, overlay: Overlay) -> Panel<'_> {
-    Panel {
-        mesh,
-        edges: &[],
-        title,
-        values: Vec::new(),
-        on: On::Faces,
-        pointed_at: None,
-        caption: String::new(),
-        handles: Vec::new(),
-        overlay,
-    }
-}
-
-/// A mesh pale and without edges, to draw on.
-fn pale(mesh: &Mesh, strokes: Vec<Stroke>) -> Overlay {
-    Overlay { strokes, face_colours: vec![MESH; mesh.faces.len()], is_smooth: true, ..Overlay::default() }
+    Panel { overlay, ..Panel::new(mesh, title) }
 }
 
 fn stroke(points: &[DVec3], colour: &'static str, width: f64) -> Stroke {
@@ -212,7 +196,11 @@ impl<'a> View<'a> {
         strokes.extend(lines().flat_map(|i| arc_strokes(&self.snakes[i], if i == 0 { 3.0 } else { 1.5 })));
         let mut panels = Vec::new();
         if self.made.surface.is_some() || swept.is_none() {
-            panels.push(panel(&ground, "positions of the snake, the start thick".to_owned(), pale(&ground, strokes)));
+            panels.push(panel(
+                &ground,
+                "positions of the snake, the start thick".to_owned(),
+                Overlay::on_pale(&ground, strokes),
+            ));
         }
         if let (Some(mesh), Some(grid)) = (&swept, &self.swept) {
             let mut strokes: Vec<Stroke> = lines().map(|i| stroke(&self.whole(i), FAINT_LINE, 0.9)).collect();
@@ -335,7 +323,7 @@ impl<'a> View<'a> {
             strokes.extend(before.map(|k| stroke(&self.whole(k), FAINT_LINE, 1.2)));
         }
         strokes.extend(arc_strokes(&self.snakes[i], 4.0));
-        let overlay = pale(&ground, strokes);
+        let overlay = Overlay::on_pale(&ground, strokes);
         (ground, overlay)
     }
 }
@@ -398,7 +386,7 @@ pub fn curves(mesh: &Mesh, triangles: &TriangleMesh, lines: &[Vec<DVec3>], repor
     let picture = Picture {
         title: format!("{}: {title}", file_name(Path::new(&report.input))),
         subtitle: "from one point and in one direction".to_owned(),
-        panels: vec![panel(mesh, String::new(), pale(mesh, strokes))],
+        panels: vec![panel(mesh, String::new(), Overlay::on_pale(mesh, strokes))],
         scale: None,
         fits_each: false,
     };

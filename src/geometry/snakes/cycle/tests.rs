@@ -111,7 +111,7 @@ fn what_does_not_move_in_one_way_is_refused() {
         (error.status(), error.place().to_owned())
     };
     let default = Options::default();
-    assert_eq!(refused(snake(FRAC_PI_2, &[1.2; 5]), &default), (Status::Degenerate, "linkage".into()));
+    assert_eq!(refused(snake(FRAC_PI_2, &[1.2; 5]), &default), (Status::Singular, "linkage".into()));
     let (seven, five) = (snake(1.0, &[1.0, -0.7, 0.9, -0.8, 0.6, 0.3]), snake(1.0, &[1.0, -0.7, 0.9, -0.8]));
     assert_eq!(refused(seven, &default), (Status::InvalidValue, "linkage".into()));
     assert_eq!(refused(five.clone(), &default), (Status::InvalidValue, "linkage".into()));

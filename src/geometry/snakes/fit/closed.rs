@@ -17,13 +17,12 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::{FittedSnake, LEAST_ANGLE, Options, ROUNDS, check, deviation, search, shapes};
+use super::{FittedSnake, LEAST_ANGLE, Options, ROUNDS, Terms, check, deviation, search, shapes};
 use crate::error::{Error, Result, Status};
 use crate::geometry::snakes::projection::meet;
 use crate::geometry::snakes::samples::Samples;
 use crate::geometry::snakes::{ArcShape, Distance, Snake};
-use crate::linalg::gauss_newton::{Progress, Residuals, Stop, minimise};
-use crate::linalg::least_squares::LeastSquares;
+use crate::linalg::gauss_newton::{Progress, Stop, minimise};
 
 /// Arcs that are longer or shorter than the mean by this factor have left the parts of the curve that they stand for.
 const UNEVEN: f64 = 3.0;
@@ -145,8 +144,13 @@ impl Around {
         };
         self.parts.iter().enumerate().map(arc).collect()
     }
+}
 
-    /// Calls `add` with each residual, and the control points that it depends on with its derivatives.
+impl Terms for Around {
+    fn point_count(&self) -> usize {
+        self.parts.len()
+    }
+
     fn visit(&self, x: &[f64], mut add: impl FnMut(f64, &[(usize, DVec3)])) {
         let at = |i: usize| DVec3::from_slice(&x[3 * i..3 * i + 3]);
         for Distance { points: [i, j], length } in &self.edges {
@@ -191,27 +195,6 @@ impl Around {
                 add(self.nearness * along.dot(contact - start), &found.map(|(i, v)| (i, self.nearness * v)));
             }
         }
-    }
-}
-
-impl Residuals for Around {
-    fn unknown_count(&self) -> usize {
-        3 * self.parts.len()
-    }
-
-    fn value(&mut self, x: &[f64]) -> f64 {
-        let mut sum = 0.0;
-        self.visit(x, |residual, _| sum += residual * residual);
-        sum
-    }
-
-    fn linearise(&mut self, x: &[f64], equations: &mut LeastSquares) {
-        let mut row = Vec::with_capacity(9);
-        self.visit(x, |residual, terms| {
-            row.clear();
-            row.extend(terms.iter().flat_map(|&(i, v)| (3 * i as u32..).zip(v.to_array())));
-            equations.add(&row, -residual);
-        });
     }
 }
 
