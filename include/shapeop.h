@@ -6155,15 +6155,20 @@ SHAPEOP_API int shapeop_snakeFrameCount(struct ShapeOpSnake *snake);
 SHAPEOP_API enum shapeop_err shapeop_snakeFrames(struct ShapeOpSnake *snake, double *control, int capacity, int *count);
 
 /**
- * Writes the frames of the last evolution, 6 numbers each, if there is room for `capacity` of them, and their number to
+ * Writes the frames of the last evolution, 7 numbers each, if there is room for `capacity` of them, and their number to
  * `count`: the time; the deviation from the surface; by how much a distance or a rail is missed at most; by how much a
  * height differs from that at the start at most; by how much a distance of control points three apart is off, where
- * those are kept; by how much the velocities that led there miss a condition. In model units and times.
+ * those are kept; by how much a distance was off before the projection; by how much the velocities that led there miss a
+ * condition. In model units and times.
  *
  * # Safety
- * `rows` is null or writable for `6 * capacity` doubles, `count` for one int.
+ * `rows` is null or writable for `7 * capacity` doubles, `count` for one int.
  */
-SHAPEOP_API enum shapeop_err shapeop_snakeFrameRows(struct ShapeOpSnake *snake, double *rows, int capacity, int *count);
+SHAPEOP_API
+enum shapeop_err shapeop_snakeFrameRows(struct ShapeOpSnake *snake,
+                                        double *rows,
+                                        int capacity,
+                                        int *count);
 
 /**
  * Puts the snake to a position that was found last, from which it can move on. What was found is forgotten.

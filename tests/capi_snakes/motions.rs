@@ -40,8 +40,8 @@ fn a_snake_in_a_plane_moves_rigidly_in_it() {
     assert!(at.iter().flatten().all(|p| p[2].abs() < 1e-12) && distance(at[6][0], at[0][0]) > 0.05);
     // SAFETY: `all` gives room for the stated capacity; doubles, or null.
     unsafe {
-        let rows = all(0.0, 6, |out, room, count| shapeop_snakeFrameRows(snake.0, out, room, count));
-        assert!(rows.chunks_exact(6).enumerate().all(|(k, row)| (row[0] - 0.02 * k as f64).abs() < 1e-12));
+        let rows = all(0.0, 7, |out, room, count| shapeop_snakeFrameRows(snake.0, out, room, count));
+        assert!(rows.chunks_exact(7).enumerate().all(|(k, row)| (row[0] - 0.02 * k as f64).abs() < 1e-12));
         let (mut rms, mut apart) = (1.0, 1.0);
         assert_eq!(shapeop_snakeCongruence(snake.0, 0, 6, &mut rms, &mut apart), SO_SUCCESS);
         assert!(rms < 1e-12 && apart < 1e-12, "{rms} {apart}");

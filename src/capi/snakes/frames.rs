@@ -39,13 +39,14 @@ pub unsafe extern "C" fn shapeop_snakeFrames(
     }))
 }
 
-/// Writes the frames of the last evolution, 6 numbers each, if there is room for `capacity` of them, and their number to
+/// Writes the frames of the last evolution, 7 numbers each, if there is room for `capacity` of them, and their number to
 /// `count`: the time; the deviation from the surface; by how much a distance or a rail is missed at most; by how much a
 /// height differs from that at the start at most; by how much a distance of control points three apart is off, where
-/// those are kept; by how much the velocities that led there miss a condition. In model units and times.
+/// those are kept; by how much a distance was off before the projection; by how much the velocities that led there miss a
+/// condition. In model units and times.
 ///
 /// # Safety
-/// `rows` is null or writable for `6 * capacity` doubles, `count` for one int.
+/// `rows` is null or writable for `7 * capacity` doubles, `count` for one int.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapeop_snakeFrameRows(
     snake: *mut ShapeOpSnake,
@@ -54,14 +55,10 @@ pub unsafe extern "C" fn shapeop_snakeFrameRows(
     count: *mut c_int,
 ) -> shapeop_err {
     code(guard(snake, |draft| {
-        let row = |frame: &Frame| {
-            let Frame { time, deviation, residual, height_residual, incongruence, velocity_residual, .. } = *frame;
-            [time, deviation, residual, height_residual, incongruence, velocity_residual]
-        };
-        let all: Vec<f64> = draft.evolution()?.frames.iter().flat_map(row).collect();
+        let all: Vec<f64> = draft.evolution()?.frames.iter().flat_map(Frame::figures).collect();
         let mut outputs = Outputs::default();
         // SAFETY: the caller vouches for both.
-        unsafe { outputs.sized("rows", rows, capacity, count, all, 6)? };
+        unsafe { outputs.sized("rows", rows, capacity, count, all, 7)? };
         outputs.write()
     }))
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::arc_list::ArcList;
 use super::covering::{flat_lamellae, lamella};
 use super::cycle::{self, Motion, cycle};
-use super::evolution::{self, Direction, Evolution, Frame, Stop, Task, evolve};
+use super::evolution::{self, Direction, Evolution, Stop, Task, evolve};
 use super::freedoms::{Freedoms, freedoms, freedoms_on_surface};
 use super::functionals::{Row, near_plane, near_vector};
 use super::projection::{self, Projected, project};
@@ -367,8 +367,7 @@ impl Draft {
     ) -> Result<&Evolution> {
         let found = self.with_task(|task| evolve(task, options, progress))?;
         for frame in &found.frames {
-            let Frame { time, deviation, residual, height_residual, incongruence, velocity_residual, .. } = *frame;
-            check_numbers(&[time, deviation, residual, height_residual, incongruence, velocity_residual])?;
+            check_numbers(&frame.figures())?;
         }
         if let Stop::Deviation(by) | Stop::RailEnd { distance: by, .. } = found.stop {
             check_numbers(&[by])?;

@@ -181,8 +181,28 @@ pub struct Frame {
     pub height_residual: f64,
     /// By how much a distance three apart is off at most, where those are kept.
     pub incongruence: f64,
+    /// By how much a distance was off at most where velocities, and accelerations, led to, before the projection. Of a step `h` it
+    /// is of the second order, with accelerations of the third.
+    pub predicted_residual: f64,
     /// By how much the velocities that led here miss a condition at most, in model units per time.
     pub velocity_residual: f64,
+}
+
+impl Frame {
+    /// Its numbers, from `time` on.
+    pub(crate) fn figures(&self) -> [f64; 7] {
+        let Self {
+            time,
+            deviation,
+            residual,
+            height_residual,
+            incongruence,
+            predicted_residual,
+            velocity_residual,
+            ..
+        } = *self;
+        [time, deviation, residual, height_residual, incongruence, predicted_residual, velocity_residual]
+    }
 }
 
 /// Why an evolution stopped.

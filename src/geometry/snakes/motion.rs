@@ -62,6 +62,8 @@ pub(super) struct Rates {
 pub(super) struct Step {
     pub state: State,
     pub projected: Projected,
+    /// By how much a distance was off at most before the projection.
+    pub predicted_residual: f64,
     /// By how much distances three apart are off, where they are to be kept.
     pub incongruence: f64,
     /// The largest way that the projection took.
@@ -320,6 +322,7 @@ impl<'a> Motion<'a> {
             }
         }
         let mut near = state.snake.moved(target.clone())?;
+        let predicted_residual = near.residual();
         let mut round = 0;
         let way = |(a, b): (&DVec3, &DVec3)| a.distance(*b);
         let longest = state.snake.control().iter().zip(&target).map(way).fold(0.0, f64::max);
@@ -344,7 +347,8 @@ impl<'a> Motion<'a> {
         };
         let taken = projected.snake.control().iter().zip(&predicted).map(|(a, b)| a.distance(*b));
         let taken_back = taken.fold(0.0, f64::max);
-        Ok(Step { state: State { snake: projected.snake.clone(), rails }, projected, incongruence, taken_back })
+        let state = State { snake: projected.snake.clone(), rails };
+        Ok(Step { state, projected, predicted_residual, incongruence, taken_back })
     }
 
     /// The rails that the snake glides on.

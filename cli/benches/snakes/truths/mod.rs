@@ -14,7 +14,6 @@ use anyhow::Result;
 use shapeop::error::Status;
 
 use crate::group::Group;
-pub use orders::Rates;
 
 type Truths = fn() -> Result<Group>;
 

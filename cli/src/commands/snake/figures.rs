@@ -74,6 +74,7 @@ pub struct FrameInReport {
     /// By how much a distance of control points three apart changed, where those are kept.
     pub incongruence: f64,
     /// By how much velocities missed a condition, in model units a time.
+    pub predicted_residual: f64,
     pub velocity_residual: f64,
 }
 
@@ -85,6 +86,7 @@ impl FrameInReport {
             residual: frame.residual,
             height_residual: frame.height_residual,
             incongruence: frame.incongruence,
+            predicted_residual: frame.predicted_residual,
             velocity_residual: frame.velocity_residual,
         }
     }

@@ -60,6 +60,7 @@ impl<'a> Run<'a> {
             residual: snake.residual(),
             height_residual: 0.0,
             incongruence: 0.0,
+            predicted_residual: 0.0,
             velocity_residual: 0.0,
             snake: snake.clone(),
         };
@@ -114,6 +115,7 @@ impl<'a> Run<'a> {
                 residual: next.projected.residual,
                 height_residual: next.projected.height_residual,
                 incongruence: next.incongruence,
+                predicted_residual: next.predicted_residual,
                 velocity_residual: rates.velocity.residual,
             });
             if options.stops_at_cycle && self.is_back(&rates, h) {

@@ -77,13 +77,20 @@ impl Residuals<'_> {
         distances.chain(rows).sum::<f64>() + heights.sum::<f64>()
     }
 
-    /// Newton's steps, shortest each, or parts of them, until residuals are at most `met` of the size; where none lowers the squares of
-    /// the residuals, damped ones.
+    /// Newton's steps, shortest each, or parts of them, until residuals are at most `met` of the size, and one more, as radii of arcs
+    /// that turn by little are less exact than distances; where none lowers the squares of the residuals, damped ones.
     pub(super) fn polish(&self, start: &[DVec3], most: usize, met: f64) -> Polished {
         let mut at = Polished { points: start.to_vec(), residual: self.residual(start), steps: 0 };
         let mut squares = self.squares(start, false);
         let mut damping: Option<f64> = None;
-        while at.residual > met * self.size && at.steps < most {
+        let mut is_last = false;
+        while at.steps < most {
+            if at.residual <= met * self.size {
+                if is_last || at.steps == 0 {
+                    break;
+                }
+                is_last = true;
+            }
             let Some(saddle) = self.linearised(&at.points, false) else { break };
             let found = match damping {
                 None => saddle.solve(&self.positions),
@@ -113,20 +120,24 @@ impl Residuals<'_> {
                         Some(damping) => Some(0.2 * damping),
                     };
                 }
-                None if damping.is_some_and(|damping| damping > MOST_DAMPING) => break,
+                None if is_last || damping.is_some_and(|damping| damping > MOST_DAMPING) => break,
                 None => damping = Some(damping.map_or(FIRST_DAMPING, |damping| 10.0 * damping)),
             }
         }
         at
     }
 
-    /// Newton's method for heights and all, where it converges as it should, without going far.
+    /// Newton's method for heights and all, likewise, where it converges as it should, without going far.
     pub(super) fn polish_heights(&self, start: &[DVec3], reach: f64) -> Option<Polished> {
         let (mut points, mut squares) = (start.to_vec(), self.squares(start, true));
+        let mut is_last = false;
         for steps in 0..=MOST_NEWTON_STEPS {
             let residual = self.largest(&points, true);
             if residual <= MET * self.size {
-                return Some(Polished { points, residual, steps });
+                if is_last || steps == 0 {
+                    return Some(Polished { points, residual, steps });
+                }
+                is_last = true;
             }
             let found = self.linearised(&points, true)?.solve(&self.positions).ok()?;
             points.iter_mut().zip(found.x.chunks_exact(3)).for_each(|(p, d)| *p += DVec3::from_slice(d));

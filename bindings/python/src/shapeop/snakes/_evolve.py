@@ -88,9 +88,9 @@ class Evolution(Frames):
         return f"<shapeop.snakes.Evolution of {len(self)} positions, stopped by {self.stop.name}>"
 
     def _column(self, k: int) -> Any:
-        rows = self._doubles(lib.shapeop_snakeFrameRows, 6)
-        column = doubles(len(rows) // 6)
-        column[:] = rows[k::6]
+        rows = self._doubles(lib.shapeop_snakeFrameRows, 7)
+        column = doubles(len(rows) // 7)
+        column[:] = rows[k::7]
         return _arrays.doubles(column)
 
     @property
@@ -117,6 +117,11 @@ class Evolution(Frames):
     def incongruences(self) -> Any:
         """By how much a distance of control points three apart is off, where those are kept."""
         return self._column(4)
+
+    @property
+    def predicted_residuals(self) -> Any:
+        """By how much a distance was off at most before each position was projected."""
+        return self._column(5)
 
 
 def evolve(
