@@ -20,6 +20,11 @@ const NO_GAIN: f64 = 0.75;
 /// and it is not more than this part: more is no way to go.
 const MOST_TAKEN_BACK: f64 = 0.9;
 
+/// Of a way back that is as long for half the step, but for this part of it, the step is not the cause: the projection settles heights
+/// that were left. It may be so many times as long as the step.
+const OWN_WAY: f64 = 0.9;
+const MOST_OWN_WAY: f64 = 2.0;
+
 /// After a step that was not halved the next one may be longer by this factor, up to the step asked for.
 const GROWTH: f64 = 1.5;
 
@@ -169,6 +174,10 @@ impl<'a> Run<'a> {
                     match before {
                         Some((longer, of_longer)) if part > NO_GAIN * of_longer && of_longer <= MOST_TAKEN_BACK => {
                             (self.idle, self.step) = (of_longer, 2.0 * h);
+                            return Ok((longer, 2.0 * h));
+                        }
+                        Some((longer, of_longer)) if part > 2.0 * OWN_WAY * of_longer && of_longer <= MOST_OWN_WAY => {
+                            self.step = 2.0 * h;
                             return Ok((longer, 2.0 * h));
                         }
                         _ => (before, failed) = (Some((next, part)), None),

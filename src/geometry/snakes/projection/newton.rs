@@ -14,6 +14,9 @@ use crate::linalg::saddle::SaddlePoint;
 /// Newton steps at most where the derivatives have full rank; 3 or 4 do.
 pub(super) const MOST_NEWTON_STEPS: usize = 10;
 
+/// Residuals that no step lowers, relative to the size.
+const ROUND_OFF: f64 = 1e-15;
+
 /// Damped steps at most where they have not: residuals then fall by a factor, not with squares.
 pub(super) const MOST_DAMPED_STEPS: usize = 200;
 
@@ -86,7 +89,7 @@ impl Residuals<'_> {
         let mut is_last = false;
         while at.steps < most {
             if at.residual <= met * self.size {
-                if is_last || at.steps == 0 {
+                if is_last || at.residual <= ROUND_OFF * self.size {
                     break;
                 }
                 is_last = true;
@@ -134,7 +137,7 @@ impl Residuals<'_> {
         for steps in 0..=MOST_NEWTON_STEPS {
             let residual = self.largest(&points, true);
             if residual <= MET * self.size {
-                if is_last || steps == 0 {
+                if is_last || residual <= ROUND_OFF * self.size {
                     return Some(Polished { points, residual, steps });
                 }
                 is_last = true;
