@@ -229,7 +229,7 @@ pub enum Stop {
     },
     /// The snake is back at its start.
     Cycle,
-    /// It does not move any more: no velocity is left, or the projection takes every step back.
+    /// It does not move any more: no velocity is left, the projection takes every step back, or 25 steps led nowhere.
     Stalled,
     /// The caller asked for it.
     Cancelled,

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::{Frame, Progress, Stop};
+use super::{Direction, Frame, Progress, Stop};
 use crate::error::{Result, Status};
 use crate::geometry::snakes::Snake;
 use crate::geometry::snakes::motion::{Failure, Motion, Rates, State, Step};
@@ -31,6 +31,10 @@ const GROWTH: f64 = 1.5;
 /// Velocities below this part of the speeds asked for, or of the snake's length per time, are none.
 const NO_MOTION: f64 = 1e-12;
 
+/// A snake that got no farther in so many steps than this part of what its velocities, and speeds asked for, led to moves no more.
+const IDLE_STEPS: usize = 25;
+const LEAST_PROGRESS: f64 = 0.01;
+
 /// A snake has been away from its start where it was farther than so many steps, and is back within so many.
 const CYCLE: [f64; 2] = [10.0, 6.0];
 
@@ -51,6 +55,8 @@ pub(super) struct Run<'a> {
     /// The part of the last steps that the projection took back however short they were.
     idle: f64,
     frames: Vec<Frame>,
+    /// How far velocities, or speeds asked for, led from each of these to the next.
+    ways: Vec<f64>,
     cycle: Option<Start>,
 }
 
@@ -71,7 +77,7 @@ impl<'a> Run<'a> {
         };
         let state = State { snake: snake.clone(), rails: on_rails };
         let step = motion.options.step;
-        Self { motion, state, time: 0.0, step, idle: 0.0, frames: vec![start], cycle: None }
+        Self { motion, state, time: 0.0, step, idle: 0.0, frames: vec![start], ways: Vec::new(), cycle: None }
     }
 
     /// The positions so far.
@@ -123,6 +129,10 @@ impl<'a> Run<'a> {
                 predicted_residual: next.predicted_residual,
                 velocity_residual: rates.velocity.residual,
             });
+            self.ways.push(h * fastest.max(self.speed_asked()));
+            if self.is_idle() {
+                return Ok(Stop::Stalled);
+            }
             if options.stops_at_cycle && self.is_back(&rates, h) {
                 return Ok(Stop::Cycle);
             }
@@ -194,6 +204,25 @@ impl<'a> Run<'a> {
             failed = Some(failure);
         }
         Err(failed.map_or(Ok(Stop::Stalled), stopped))
+    }
+
+    /// The greatest speed asked for, 0 without a direction.
+    fn speed_asked(&self) -> f64 {
+        let task = self.motion.task;
+        match task.direction {
+            Direction::Free => 0.0,
+            Direction::Sideways | Direction::Along(_) => {
+                task.speeds.iter().fold(0.0, |most, speed| most.max(speed.abs()))
+            }
+        }
+    }
+
+    /// Whether the last steps led nowhere.
+    fn is_idle(&self) -> bool {
+        let Some(from) = self.ways.len().checked_sub(IDLE_STEPS) else { return false };
+        let [before, now] = [from, self.ways.len()].map(|k| self.frames[k].snake.control());
+        let farthest = before.iter().zip(now).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        farthest < LEAST_PROGRESS * self.ways[from..].iter().sum::<f64>()
     }
 
     /// Whether the snake passed its start. Along the first velocity it comes from below.

@@ -226,6 +226,11 @@ fn a_ring_climbs_a_cylinder_and_cannot_climb_a_cone() {
         assert!(matches!(kept.stop, Stop::Stalled | Stop::Deviation(_)), "{:?}", kept.stop);
         assert!(matches!(left.stop, Stop::Deviation(by) if by > 0.05) && left.frames.len() < 20, "{:?}", left.stop);
         assert!(left.frames.iter().all(|frame| frame.deviation <= 0.05 && frame.snake.residual() < 1e-12));
+        // As fast as it can on the cone is a creep.
+        let options = Options { max_steps: 1000, ..Options::default() };
+        let crept = run(&Task { speeds, ..on(&ring, &cone) }, &options);
+        assert!(crept.stop == Stop::Stalled && crept.frames.len() < 60, "{:?} {}", crept.stop, crept.frames.len());
+        assert!(crept.last().deviation < 0.06, "{}", crept.last().deviation);
     }
 }
 
