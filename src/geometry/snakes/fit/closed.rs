@@ -35,9 +35,8 @@ const UNEVEN: f64 = 3.0;
 ///
 /// # Errors
 /// Fewer than 3 points, coordinates that are not finite, points that repeat the one before (`points`, `points[i]`); fewer than 3
-/// arcs or more than 10 000, or so few that one would have to turn by π or more or that they do not
-/// follow the curve (`arc_count`); `options.nearness` out of its
-/// range. Status `Degenerate`: the curve is straight along an arc, which snakes have none of (`points`).
+/// arcs or more than 10 000, or so few that one would have to turn by π or more or that they do not follow the curve (`arc_count`);
+/// `options.nearness` out of its range. Status `Degenerate`: the curve is straight along an arc, which snakes have none of (`points`).
 pub fn fit_closed(
     points: &[DVec3],
     arc_count: usize,
