@@ -157,7 +157,7 @@ pub fn project(task: &Task<'_>, options: &Options) -> Result<Projected> {
         }
     }
     let most = MOST_NEWTON_STEPS + MOST_DAMPED_STEPS;
-    let mut polished = residuals.polish(&points, most, MET);
+    let mut polished = residuals.polish(&points, most);
     steps += polished.steps;
     if !(polished.residual <= MET * residuals.size) {
         return Err(residuals.stalled(&polished));
@@ -165,7 +165,7 @@ pub fn project(task: &Task<'_>, options: &Options) -> Result<Projected> {
     let mut is_nearest = true;
     if options.is_exact {
         (points, is_nearest) = residuals.nearest(polished.points);
-        polished = residuals.polish(&points, most, MET);
+        polished = residuals.polish(&points, most);
         if !(polished.residual <= MET * residuals.size) {
             return Err(residuals.stalled(&polished));
         }
@@ -201,9 +201,7 @@ pub(super) fn meet(
         positions: positions(count, is_closed),
         size: around(distances, count),
     };
-    let met = residuals.polish(control, MOST_NEWTON_STEPS + MOST_DAMPED_STEPS, MET);
-    // One step more takes the residuals to the last bit or two.
-    let polished = residuals.polish(&met.points, 1, 0.0);
+    let polished = residuals.polish(control, MOST_NEWTON_STEPS + MOST_DAMPED_STEPS);
     *control = polished.points;
     polished.residual
 }

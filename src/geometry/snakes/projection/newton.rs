@@ -80,15 +80,15 @@ impl Residuals<'_> {
         distances.chain(rows).sum::<f64>() + heights.sum::<f64>()
     }
 
-    /// Newton's steps, shortest each, or parts of them, until residuals are at most `met` of the size, and one more, as radii of arcs
+    /// Newton's steps, shortest each, or parts of them, until residuals are at most [`MET`] of the size, and one more, as radii of arcs
     /// that turn by little are less exact than distances; where none lowers the squares of the residuals, damped ones.
-    pub(super) fn polish(&self, start: &[DVec3], most: usize, met: f64) -> Polished {
+    pub(super) fn polish(&self, start: &[DVec3], most: usize) -> Polished {
         let mut at = Polished { points: start.to_vec(), residual: self.residual(start), steps: 0 };
         let mut squares = self.squares(start, false);
         let mut damping: Option<f64> = None;
         let mut is_last = false;
         while at.steps < most {
-            if at.residual <= met * self.size {
+            if at.residual <= MET * self.size {
                 if is_last || at.residual <= ROUND_OFF * self.size {
                     break;
                 }
