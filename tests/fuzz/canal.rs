@@ -5,11 +5,11 @@ use std::ffi::c_int;
 use std::ptr;
 
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
+use proptest::test_runner::TestCaseError;
 use shapeop::capi::shapeop_err::*;
 use shapeop::capi::*;
 
-use super::last_error;
+use super::objects::{Done, carry_out, run_sequences};
 
 /// Sequences of the ordinary run.
 const SEQUENCES: u32 = 2_000;
@@ -243,11 +243,7 @@ fn make(surface: *mut ShapeOpCanal, call: &Call) -> (bool, Vec<f64>) {
     (is_done, room)
 }
 
-fn check(is_right: bool, what: &str) -> Result<(), TestCaseError> {
-    if is_right { Ok(()) } else { Err(TestCaseError::fail(what.to_owned())) }
-}
-
-fn run(sequence: &[(usize, Call)]) -> Result<(), TestCaseError> {
+fn run(sequence: &[(usize, Call)], done: &mut Done) -> Result<(), TestCaseError> {
     let profile = [2.7, 0.0, 0.0, 2.5, 0.0, 0.5, 2.0, 0.0, 0.7, 1.5, 0.0, 0.5];
     // SAFETY: 4 points and two vectors.
     let torus =
@@ -257,22 +253,9 @@ fn run(sequence: &[(usize, Call)]) -> Result<(), TestCaseError> {
     let solver = shapeop_create();
     let handles =
         [torus, torus, torus, stale, solver.cast(), ptr::null_mut(), ptr::without_provenance_mut(0x7fff_1234)];
-    for (which, call) in sequence {
-        let surface = handles[which % handles.len()];
-        let before = points_of(surface);
-        let (is_done, room) = make(surface, call);
-        let message = last_error(ptr::null_mut());
-        let after = points_of(surface);
-        check(is_done == message.is_empty(), &format!("{call:?}: {is_done}, but {message:?}"))?;
-        check(!message.contains("inside the library"), &message)?;
-        check(room.iter().all(|number| number.is_finite()), &format!("{call:?} handed out {room:?}"))?;
-        let finite = |points: &Vec<f64>| points.iter().all(|number| number.is_finite());
-        check(after.as_ref().is_none_or(finite), &format!("{call:?} left points that are not finite"))?;
-        if !is_done {
-            check(bits(&before) == bits(&after), &format!("{call:?} was refused and changed the surface"))?;
-            check(room.iter().all(|number| *number == 0.0), &format!("{call:?} was refused and wrote {room:?}"))?;
-        }
-    }
+    let picture = |surface| bits(&points_of(surface));
+    let is_finite = |points: &Option<Vec<u64>>| points.iter().flatten().all(|bits| f64::from_bits(*bits).is_finite());
+    carry_out(&handles, sequence, make, picture, is_finite, done)?;
     shapeop_canalDelete(torus);
     shapeop_delete(solver);
     Ok(())
@@ -280,8 +263,5 @@ fn run(sequence: &[(usize, Call)]) -> Result<(), TestCaseError> {
 
 #[test]
 fn no_sequence_of_calls_on_surfaces_crashes() {
-    let config = Config { cases: SEQUENCES, failure_persistence: None, ..Config::default() };
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[17; 32]);
-    let sequences = proptest::collection::vec((0..7_usize, call()), 1..25);
-    TestRunner::new_with_rng(config, rng).run(&sequences, |sequence| run(&sequence)).unwrap();
+    run_sequences(SEQUENCES, 17, call(), run);
 }

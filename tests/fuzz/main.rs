@@ -8,6 +8,7 @@
 mod calls;
 mod canal;
 mod canal_shapes;
+mod objects;
 mod ruled;
 mod snakes;
 

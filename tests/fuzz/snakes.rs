@@ -1,18 +1,17 @@
 //! Random sequences of calls on snakes: valid, stale, foreign and null handles, steps in any order, numbers that are not finite, counts
 //! that do not fit. None crashes, none hands out a number that is not finite, and a refused one changes nothing and says why.
 
-use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::ffi::{CStr, CString, c_int, c_uint};
 use std::ptr;
 
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
+use proptest::test_runner::TestCaseError;
 use shapeop::capi::shapeop_err::*;
 use shapeop::capi::*;
 
 use super::canal::number;
 use super::last_error;
+use super::objects::{Done, carry_out, check, run_sequences};
 
 /// Sequences of the ordinary run.
 const SEQUENCES: u32 = 1_500;
@@ -442,13 +441,6 @@ unsafe fn told(snake: *mut ShapeOpSnake, which: u32, [i, j]: [c_int; 2], out: *m
     }
 }
 
-fn check(is_right: bool, what: &str) -> Result<(), TestCaseError> {
-    if is_right { Ok(()) } else { Err(TestCaseError::fail(what.to_owned())) }
-}
-
-/// How often each kind of call was carried out.
-type Done = BTreeMap<String, usize>;
-
 fn run(sequence: &[(usize, Call)], done: &mut Done) -> Result<(), TestCaseError> {
     let snake = six_arcs();
     check(!snake.is_null(), &last_error(ptr::null_mut()))?;
@@ -457,26 +449,7 @@ fn run(sequence: &[(usize, Call)], done: &mut Done) -> Result<(), TestCaseError>
     let solver = shapeop_create();
     let mut handles = vec![snake; 12];
     handles.extend([stale, solver.cast(), ptr::null_mut(), ptr::without_provenance_mut(0x7fff_1234)]);
-    for (which, call) in sequence {
-        let handle = handles[which % handles.len()];
-        if std::env::var_os("SHAPEOP_FUZZ_TRACE").is_some() {
-            eprintln!("{call:?}");
-        }
-        let before = picture(handle);
-        let (is_done, room) = make(handle, call);
-        let message = last_error(ptr::null_mut());
-        let after = picture(handle);
-        let kind = format!("{call:?}").split('(').next().unwrap_or_default().to_owned();
-        *done.entry(kind).or_default() += usize::from(is_done);
-        check(is_done == message.is_empty(), &format!("{call:?}: {is_done}, but {message:?}"))?;
-        check(!message.contains("inside the library"), &format!("{call:?}: {message}"))?;
-        check(room.iter().all(|number| number.is_finite()), &format!("{call:?} handed out {room:?}"))?;
-        check(!after.0.contains("null"), &format!("{call:?} left points that are not finite"))?;
-        if !is_done {
-            check(before == after, &format!("{call:?} was refused and changed the snake"))?;
-            check(room.iter().all(|number| *number == 0.0), &format!("{call:?} was refused and wrote {room:?}"))?;
-        }
-    }
+    carry_out(&handles, sequence, make, picture, |picture| !picture.0.contains("null"), done)?;
     shapeop_snakeDelete(snake);
     shapeop_delete(solver);
     Ok(())
@@ -484,14 +457,7 @@ fn run(sequence: &[(usize, Call)], done: &mut Done) -> Result<(), TestCaseError>
 
 #[test]
 fn no_sequence_of_calls_on_snakes_crashes() {
-    let config = Config { cases: SEQUENCES, failure_persistence: None, max_shrink_iters: 200, ..Config::default() };
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[31; 32]);
-    let sequences = proptest::collection::vec((0..16_usize, call()), 1..25);
-    let done = RefCell::new(Done::new());
-    let run = |sequence: Vec<(usize, Call)>| run(&sequence, &mut done.borrow_mut());
-    TestRunner::new_with_rng(config, rng).run(&sequences, run).unwrap();
+    let done = run_sequences(SEQUENCES, 31, call(), run);
     // A call that is always refused tests nothing; a text at random is no snake.
-    let done = done.into_inner();
     assert!(done.len() == 29 && done.iter().all(|(kind, count)| *count > 0 || kind == "Text"), "{done:?}");
-    println!("{done:?}");
 }
