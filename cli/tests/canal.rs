@@ -641,28 +641,19 @@ fn the_commands_of_the_documentation_run() {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_stops_smoothing_and_writes_what_was_reached() {
-    use std::time::{Duration, Instant};
+    use std::time::Duration;
+
+    use program::interrupt;
 
     let folder = Folder::new("canal-interrupt");
     let out = folder.path("out");
     let arc = curve("arc.csv");
     let strip =
         ["canal", "strip", &arc, "--start", "3.5,0", "--border-length", "6", "--points", "1500", "--refine", "1", "2"];
-    let mut child = Command::new(env!("CARGO_BIN_EXE_shapeop"))
-        .args(strip)
-        .args(["--smooth", "--iterations", "100000", "--picture", "none", "-o"])
-        .arg(&out)
-        .stdout(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
+    let folder_out = out.display().to_string();
+    let search = ["--smooth", "--iterations", "100000", "--picture", "none", "-o", &folder_out];
     // The folder is made right before the search starts; an iteration takes some tenths of a second.
-    let started = Instant::now();
-    while !out.exists() && started.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    std::thread::sleep(Duration::from_millis(400));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    interrupt(&[&strip[..], &search].concat(), Some(&out), Duration::from_millis(400));
     let report = read_json(&out.join("arc.strip.smooth.json"));
     assert_eq!(report["found"]["smoothing_stopped"], "stopped with Ctrl-C");
     let mesh = file::read(out.join("arc.strip.smooth.obj")).unwrap();

@@ -331,29 +331,18 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_stops_and_writes_what_was_reached() {
-    use std::time::{Duration, Instant};
+    use std::time::Duration;
+
+    use program::interrupt;
 
     let folder = Folder::new("interrupt");
     let out = folder.path("out");
     let path = mesh_path("costa_mesh_free2.obj");
     let arguments = ["planarize", &path, "--iterations", "100000000", "--tolerance", "0", "--closeness", "1e-5"];
-    let mut child = Command::new(env!("CARGO_BIN_EXE_shapeop"))
-        .args(arguments)
-        .args(["--picture", "none", "-o"])
-        .arg(&out)
-        .stdout(std::process::Stdio::piped())
-        .spawn()
-        .unwrap();
+    let folder_out = out.display().to_string();
     // The folder is made right before the solve starts.
-    let started = Instant::now();
-    while !out.exists() && started.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    std::thread::sleep(Duration::from_millis(700));
-    let signalled = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(signalled.success());
-    let status = child.wait().unwrap();
-    assert_eq!(status.code(), Some(130));
+    let arguments = [&arguments[..], &["--picture", "none", "-o", &folder_out]].concat();
+    let text = interrupt(&arguments, Some(&out), Duration::from_millis(700));
     let before = file::read(&path).unwrap();
     let after = file::read(out.join("costa_mesh_free2.planarize.obj")).unwrap();
     let report = json(&out.join("costa_mesh_free2.planarize.json"));
@@ -361,7 +350,5 @@ fn ctrl_c_stops_and_writes_what_was_reached() {
     assert!(report["iterations"].as_u64().unwrap() > 0);
     assert_report_is_true(&report, &before, &after);
     assert!(planarity(&after).max < planarity(&before).max);
-    let mut text = String::new();
-    std::io::Read::read_to_string(&mut child.stdout.take().unwrap(), &mut text).unwrap();
     assert!(text.contains("stopped with Ctrl-C after"), "{text}");
 }

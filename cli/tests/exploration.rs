@@ -2,8 +2,6 @@
 
 mod program;
 
-use std::process::Command;
-
 use glam::DVec3;
 use serde_json::{Value, json as value};
 use shapeop::mesh::measure::{self, Spread};
@@ -291,7 +289,9 @@ fn what_is_wrong_with_a_drag_is_named_by_frame_and_field() {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_ends_a_drag_with_the_frames_that_are_there() {
-    use std::time::{Duration, Instant};
+    use std::time::Duration;
+
+    use program::interrupt;
 
     const MANY: usize = 20_000;
     let folder = Folder::new("interrupt-drag");
@@ -300,17 +300,9 @@ fn ctrl_c_ends_a_drag_with_the_frames_that_are_there() {
         .map(|i| value!({"handles": [{"point": 84, "target": [0.0, 0.0, 5.0 + 0.3 * (0.1 * i as f64).sin()]}]}))
         .collect();
     let moves = folder.write("long.json", &value!({"version": 1, "frames": moves}).to_string());
-    let mut child = Command::new(env!("CARGO_BIN_EXE_shapeop"))
-        .args(["explore", &example("explore.json"), "--handles", &moves, "--picture", "none", "--quiet", "-o"])
-        .arg(&out)
-        .spawn()
-        .unwrap();
-    let started = Instant::now();
-    while !out.join("explore.explore.frame-001.obj").exists() && started.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let (problem, folder_out) = (example("explore.json"), out.display().to_string());
+    let arguments = ["explore", &problem, "--handles", &moves, "--picture", "none", "--quiet", "-o", &folder_out];
+    interrupt(&arguments, Some(&out.join("explore.explore.frame-001.obj")), Duration::ZERO);
     let report = json(&out.join("explore.explore.json"));
     let frames = report["frames"].as_array().unwrap();
     assert!(frames.len() >= 2 && frames.len() < MANY && report["settled"].is_null());

@@ -545,18 +545,14 @@ fn the_commands_of_the_documentation_run() {
 fn ctrl_c_stops_the_optimisation_and_writes_what_was_reached() {
     use std::time::Duration;
 
+    use program::interrupt;
+
     let folder = Folder::new("ruled-interrupt");
     let out = folder.path("out");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_shapeop"))
-        .args(["ruled", &example("roof.obj"), "--levels", "40", "--control-points", "60", "--tolerance", "0"])
-        .args(["--iterations", "100000", "--picture", "none", "-o"])
-        .arg(&out)
-        .stdout(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(Duration::from_millis(2500));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let (roof, folder_out) = (example("roof.obj"), out.display().to_string());
+    let arguments = ["ruled", &roof, "--levels", "40", "--control-points", "60", "--tolerance", "0"];
+    let ends = ["--iterations", "100000", "--picture", "none", "-o", &folder_out];
+    interrupt(&[&arguments[..], &ends].concat(), None, Duration::from_millis(2500));
     let report = read_json(&out.join("roof.ruled.json"));
     assert_eq!(
         (&report["optimisation"]["stop"], &report["was_interrupted"]),

@@ -526,19 +526,15 @@ fn the_commands_of_the_documentation_run() {
 fn ctrl_c_stops_the_motion_and_writes_what_was_reached() {
     use std::time::Duration;
 
+    use program::interrupt;
+
     let folder = Folder::new("snakes-interrupt");
     let out = folder.path("out");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_shapeop"))
-        .args(["snake", "evolve", &example("roof.obj"), "--from", "3,-1.5", "--toward", "0.3,1", "--curvature", "0.35"])
-        .args(["--length", "3.6", "--arcs", "6", "--step", "1e-7", "--steps", "100000000", "--every", "1000"])
-        .args(["--picture", "none", "-o"])
-        .arg(&out)
-        .stdout(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(Duration::from_millis(2000));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let way = ["--from", "3,-1.5", "--toward", "0.3,1", "--curvature", "0.35", "--length", "3.6", "--arcs", "6"];
+    let steps = ["--step", "1e-7", "--steps", "100000000", "--every", "1000", "--picture", "none", "-o"];
+    let (roof, folder_out) = (example("roof.obj"), out.display().to_string());
+    let arguments = [&["snake", "evolve", &roof], &way[..], &steps, &[&folder_out]].concat();
+    interrupt(&arguments, None, Duration::from_millis(2000));
     let report = read_json(&out.join("roof.evolve.json"));
     assert_eq!((&report["stop"]["reason"], &report["was_interrupted"]), (&"cancelled".into(), &true.into()));
     assert!(report["evolution"]["frames"].as_array().unwrap().len() > 2);

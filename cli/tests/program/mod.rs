@@ -3,7 +3,11 @@
 #![allow(dead_code, reason = "each test program uses some of it")]
 
 use std::path::{Path, PathBuf};
+#[cfg(unix)]
+use std::process::Stdio;
 use std::process::{Command, Output};
+#[cfg(unix)]
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use shapeop::mesh::{Mesh, file};
@@ -52,6 +56,22 @@ impl Drop for Folder {
     fn drop(&mut self) {
         let _ = std::fs::remove_dir_all(&self.0);
     }
+}
+
+/// Runs the program and stops it with Ctrl-C, so long after `begun` is there if it is given, after the start otherwise. The exit code
+/// is that of programs that are stopped so; returns what it printed.
+#[cfg(unix)]
+pub fn interrupt(arguments: &[&str], begun: Option<&Path>, after: Duration) -> String {
+    let child = Command::new(env!("CARGO_BIN_EXE_shapeop")).args(arguments).stdout(Stdio::piped()).spawn().unwrap();
+    let started = Instant::now();
+    while begun.is_some_and(|path| !path.exists()) && started.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::thread::sleep(after);
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    String::from_utf8(output.stdout).unwrap()
 }
 
 pub fn shapeop(arguments: &[&str]) -> Output {
