@@ -66,6 +66,10 @@ pub enum Status {
     Infeasible = 38,
     /// What is asked for lies outside the surface, or outside the values of a function.
     OutOfDomain = 39,
+    /// There is no graphics card to solve on, or not enough of it.
+    BackendUnavailable = 40,
+    /// The graphics card was lost or refused work.
+    BackendFailed = 41,
 }
 
 impl Status {
@@ -98,6 +102,8 @@ impl Status {
         Self::NotOrientable,
         Self::Infeasible,
         Self::OutOfDomain,
+        Self::BackendUnavailable,
+        Self::BackendFailed,
     ];
 
     /// One line for people, without the details that only an [`Error`] knows.
@@ -130,6 +136,8 @@ impl Status {
             Self::NotOrientable => "no consistent choice of directions exists",
             Self::Infeasible => "side conditions contradict each other",
             Self::OutOfDomain => "what is asked for lies outside",
+            Self::BackendUnavailable => "there is no graphics card to solve on, or not enough of it",
+            Self::BackendFailed => "the graphics card was lost or refused work",
         }
     }
 }

@@ -72,6 +72,10 @@ pub enum shapeop_err {
     SO_INFEASIBLE = 38,
     /// What is asked for lies outside the surface, or outside the values of a function.
     SO_OUT_OF_DOMAIN = 39,
+    /// There is no graphics card to solve on, or not enough of it; or the library was built without the feature `gpu`.
+    SO_BACKEND_UNAVAILABLE = 40,
+    /// The graphics card was lost or refused work; the points are those of the last read-back.
+    SO_BACKEND_FAILED = 41,
 }
 
 impl From<Status> for shapeop_err {
@@ -104,6 +108,8 @@ impl From<Status> for shapeop_err {
             Status::NotOrientable => Self::SO_NOT_ORIENTABLE,
             Status::Infeasible => Self::SO_INFEASIBLE,
             Status::OutOfDomain => Self::SO_OUT_OF_DOMAIN,
+            Status::BackendUnavailable => Self::SO_BACKEND_UNAVAILABLE,
+            Status::BackendFailed => Self::SO_BACKEND_FAILED,
         }
     }
 }

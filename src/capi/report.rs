@@ -47,6 +47,9 @@ pub enum shapeop_outcome {
     SO_OUTCOME_UNBOUNDED = 5,
     /// Hard constraints contradict each other; `shapeop_getConflicts` names a small set, and the points meet the others.
     SO_OUTCOME_INFEASIBLE = 6,
+    /// The graphics card was lost or refused work; the points are those of the last read-back. `shapeop_lastError` says
+    /// what happened.
+    SO_OUTCOME_BACKEND_FAILED = 7,
 }
 
 /// What a solve found.
@@ -307,6 +310,7 @@ fn outcome(outcome: Outcome) -> shapeop_outcome {
         Outcome::Stalled => shapeop_outcome::SO_OUTCOME_STALLED,
         Outcome::Unbounded => shapeop_outcome::SO_OUTCOME_UNBOUNDED,
         Outcome::Infeasible => shapeop_outcome::SO_OUTCOME_INFEASIBLE,
+        Outcome::BackendFailed => shapeop_outcome::SO_OUTCOME_BACKEND_FAILED,
     }
 }
 

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::deformation::{Deformation, gradient_four};
 use super::lists::Lists;
-use super::{Constraint, Four, ReferenceShape, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Kernel, ReferenceShape, RowUnit, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{self, F4, Mask, V4};
 use crate::linalg::simd::{Isa, LaneKernel, dispatch_lanes};
 
@@ -66,6 +66,13 @@ pub(crate) trait Batch: Any + Send + Sync {
 
     /// True if the rest state of a slot is degenerate.
     fn is_degenerate(&self, slot: usize) -> bool;
+
+    /// How graphics cards project the type.
+    fn kernel(&self) -> Kernel;
+
+    /// Appends the numbers that the kernel reads of a slot: the coefficients of the rows, in the row unit of coordinates
+    /// divided by `size`, then the type's own.
+    fn kernel_numbers(&self, slot: usize, size: f64, numbers: &mut Vec<f64>);
 
     /// Bytes of what projecting all constraints reads besides the points: indices, scalars and rest states.
     fn byte_count(&self) -> usize;
@@ -202,6 +209,16 @@ impl<T: Constraint> Batch for TypedBatch<T> {
 
     fn is_degenerate(&self, slot: usize) -> bool {
         self.rest[slot].is_degenerate(self.scalars.get(slot))
+    }
+
+    fn kernel(&self) -> Kernel {
+        T::KERNEL
+    }
+
+    fn kernel_numbers(&self, slot: usize, size: f64, numbers: &mut Vec<f64>) {
+        let unit = if matches!(T::KERNEL, Kernel::Wgsl(_, RowUnit::Ratio)) { size } else { 1.0 };
+        numbers.extend(self.rows(slot).iter().map(|a| a * unit));
+        self.rest[slot].kernel_numbers(self.scalars.get(slot), size, numbers);
     }
 
     fn byte_count(&self) -> usize {

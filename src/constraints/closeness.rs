@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Kernel, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo};
 
 /// One Closeness constraint. Its target is its scalars, so it has no rest state.
 #[derive(Clone, Debug)]
@@ -30,6 +30,8 @@ impl Constraint for Closeness {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Constant;
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         scalars.extend_from_slice(&x.at(0).to_array());

@@ -8,7 +8,10 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Four, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo, check_positive, check_range};
+use super::{
+    Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalar, Scalars, Stencil, TypeInfo, check_positive,
+    check_range,
+};
 use crate::error::Result;
 use crate::linalg::lanes::{Mask, V4};
 use crate::linalg::simd::Isa;
@@ -38,6 +41,12 @@ impl Constraint for EdgeStrain {
         energy_scale_power: 1,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/edge_strain.wgsl"), RowUnit::Ratio);
+
+    fn kernel_numbers(&self, scalars: &[f64], _size: f64, numbers: &mut Vec<f64>) {
+        numbers.extend_from_slice(&scalars[1..]);
+    }
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         let [start, end] = x.array();

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Kernel, Projection, Rows, Scalars, Stencil, TypeInfo};
 
 /// One Laplacian constraint; it has no rest state.
 #[derive(Clone, Debug)]
@@ -39,6 +39,8 @@ impl Constraint for Laplacian {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Constant;
 
     fn at_rest(_x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self

@@ -191,6 +191,13 @@ pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// False where the targets of a centred type can have a mean other than 0.
     const TARGETS_ARE_CENTRED: bool = true;
 
+    /// The twin of [`Self::project`] for graphics cards.
+    const KERNEL: Kernel = Kernel::None;
+
+    /// Appends the numbers that the kernel reads, as many for all constraints of as many points and scalars. The kernel's
+    /// coordinates are the model's divided by `size`, a length: so are lengths here. Rows are there already.
+    fn kernel_numbers(&self, _scalars: &[f64], _size: f64, _numbers: &mut Vec<f64>) {}
+
     /// How far `x` is from the set, in `INFO.violation_unit`; 0 on the set.
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64;
 
@@ -257,6 +264,26 @@ impl TypeInfo {
             }
         }
     }
+}
+
+/// How graphics cards project constraints of a type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// They do not: the processor does, whatever the backend.
+    None,
+    /// They need not: the targets do not depend on the points.
+    Constant,
+    /// By this text in WGSL, which follows `solver/gpu/shaders/constraint.wgsl` and has `fn project(i: u32)`.
+    Wgsl(&'static str, RowUnit),
+}
+
+/// What the rows `A x` of a type are measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowUnit {
+    /// Model units.
+    Length,
+    /// Nothing: a rest length is in the coefficients.
+    Ratio,
 }
 
 /// The number of a type in [`types`]; stable, new types are appended.

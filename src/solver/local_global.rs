@@ -8,7 +8,8 @@ use glam::DVec3;
 use super::Workspace;
 use super::acceleration::Accelerator;
 use super::{
-    Dynamics, LinearSolver, Outcome, Progress, ProgressFn, Rejections, Report, STALL_ITERATIONS, SolveOptions, Solver,
+    Backend, Dynamics, LinearSolver, Outcome, Progress, ProgressFn, Rejections, Report, STALL_ITERATIONS, SolveOptions,
+    Solver,
 };
 use crate::error::{Error, Result, Status};
 use crate::problem::{Acceleration, Mode};
@@ -369,6 +370,12 @@ impl Report {
             linear_solver: LinearSolver::Direct,
             linear_solver_reason: String::new(),
             linear_iterations: 0,
+            backend: Backend::Cpu,
+            backend_reason: String::new(),
+            gpu_iterations: 0,
+            gpu_seconds: 0.0,
+            transfer_seconds: 0.0,
+            read_back_iteration: 0,
         }
     }
 }

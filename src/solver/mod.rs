@@ -10,10 +10,13 @@
 mod acceleration;
 mod anderson;
 mod assembly;
+mod backend;
 mod chunks;
 mod exploration;
 mod forces;
 mod free_components;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod history;
 mod linear_solver;
 mod local_global;
@@ -22,6 +25,7 @@ mod quasi_newton;
 mod report;
 mod system;
 
+pub use backend::{AdapterKind, Backend, BackendInfo, BackendOptions, backend_info, release_backend};
 pub use exploration::{Found, ObjectiveTerms, Residuals, Sensitivities, WeightClass};
 pub use linear_solver::LinearSolver;
 pub use report::{IterationBytes, Outcome, Progress, Rejections, Report, SolveOptions};
@@ -68,6 +72,8 @@ pub struct Solver {
     /// Orderings and numeric factorisations made so far.
     counts: SystemCounts,
     linear_solver: LinearSolver,
+    backend: Backend,
+    backend_options: BackendOptions,
     thread_count: usize,
     pool: Option<Arc<rayon::ThreadPool>>,
     explorer: Explorer,
@@ -147,13 +153,14 @@ impl Solver {
         Ok(solver)
     }
 
-    /// Replaces everything by `problem`, initialised in its mode; thread count and linear solver stay.
+    /// Replaces everything by `problem`, initialised in its mode; thread count, linear solver and backend stay.
     ///
     /// # Errors
     /// As [`Solver::from_problem`]; nothing changes then.
     pub fn set_problem(&mut self, problem: &Problem) -> Result<()> {
         let mut new = Self::assembled(problem)?;
         (new.thread_count, new.linear_solver) = (self.thread_count, self.linear_solver);
+        (new.backend, new.backend_options) = (self.backend, self.backend_options.clone());
         new.pool = self.pool.clone();
         new.init_as(problem)?;
         *self = new;

@@ -1,6 +1,6 @@
 //! What a solve was asked for and what it found.
 
-use super::{LinearSolver, Solver};
+use super::{Backend, LinearSolver, Solver};
 use crate::problem::Settings;
 
 /// When to stop.
@@ -65,6 +65,9 @@ pub enum Outcome {
     /// Hard constraints contradict each other; [`super::Found::conflicts`] names a small set of them, and the points
     /// meet the others.
     Infeasible = 6,
+    /// The graphics card was lost or refused work; the points are those of [`Report::read_back_iteration`], and the
+    /// processor can go on from there.
+    BackendFailed = 7,
 }
 
 impl Outcome {
@@ -78,6 +81,7 @@ impl Outcome {
             Self::Stalled => "stalled",
             Self::Unbounded => "unbounded",
             Self::Infeasible => "infeasible",
+            Self::BackendFailed => "backend failed",
         }
     }
 }
@@ -101,7 +105,8 @@ pub struct Report {
     pub largest_move: f64,
     /// Why it ended.
     pub outcome: Outcome,
-    /// More about an outcome of [`Outcome::Unbounded`]: the point or component that is free to move. Else empty.
+    /// More about an outcome of [`Outcome::Unbounded`], the point or component that is free to move, or of
+    /// [`Outcome::BackendFailed`], what happened to the card. Else empty.
     pub message: String,
     /// Orderings (with the analysis of the pattern) made since the solver was created.
     pub ordering_count: u32,
@@ -122,6 +127,18 @@ pub struct Report {
     pub linear_solver_reason: String,
     /// Iterations of conjugate gradients in all linear solves of this call; 0 with a factor.
     pub linear_iterations: u32,
+    /// `Gpu` if the card made any of the iterations, else `Cpu`.
+    pub backend: Backend,
+    /// Why that one, in words.
+    pub backend_reason: String,
+    /// Those of the iterations that the card made.
+    pub gpu_iterations: u32,
+    /// Seconds in which the card worked.
+    pub gpu_seconds: f64,
+    /// Seconds in which points went to the card and back.
+    pub transfer_seconds: f64,
+    /// The iteration after which points were read back from the card last.
+    pub read_back_iteration: u32,
 }
 
 /// How often acceleration was held back, by cause.

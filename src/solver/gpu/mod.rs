@@ -1,0 +1,14 @@
+//! Iterations on the graphics card.
+
+mod card;
+mod frame;
+mod local_step;
+
+pub(in crate::solver) use card::Card;
+pub(in crate::solver) use local_step::projections;
+
+use crate::error::{Error, Status};
+
+fn internal(what: &str) -> Error {
+    Error::new(Status::Internal, what)
+}

@@ -1,0 +1,1 @@
+// Decompositions of 3×3 matrices, twins of linalg/small.rs.
