@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::anderson::Anderson;
-use super::history::{Combination, History};
+use super::history::{Combination, History, Products};
 use super::quasi_newton::{LineSearch, QuasiNewton};
 use super::report::Rejections;
 use crate::error::{Error, Result, Status};
@@ -39,16 +39,11 @@ enum Method {
     QuasiNewton(QuasiNewton),
 }
 
-/// The state of one accelerated solve. Its memory is kept for the next one, its contents are not: whatever happened in
-/// between (points set, constraints edited, a new time step) changed what the old iterates say.
+/// What decides about directions and trials, from inner products and energies alone.
 #[derive(Debug)]
-pub(super) struct Accelerator {
+pub(super) struct Chooser {
     method: Method,
-    history: History,
-    combination: Combination,
-    /// The points that the iteration began at, and the direction from them.
-    start: Vec<DVec3>,
-    direction: Vec<DVec3>,
+    pub(super) combination: Combination,
     search: LineSearch,
     /// True while the last direction tried was given up. The next one then gets a single trial: where plain steps do not
     /// lead to a minimum of the energy (projections that are not the nearest), all lengths fail near the end.
@@ -56,7 +51,7 @@ pub(super) struct Accelerator {
     pub(super) rejections: Rejections,
 }
 
-impl Accelerator {
+impl Chooser {
     /// For `acceleration`; `None` if that is none. `Automatic` must have been decided on.
     pub(super) fn new(acceleration: Acceleration) -> Option<Self> {
         let method = match acceleration {
@@ -66,10 +61,7 @@ impl Accelerator {
         };
         Some(Self {
             method,
-            history: History::default(),
             combination: Combination::default(),
-            start: Vec::new(),
-            direction: Vec::new(),
             search: LineSearch::new(0.0, 0.0),
             is_discouraged: false,
             rejections: Rejections::default(),
@@ -84,24 +76,116 @@ impl Accelerator {
         }
     }
 
-    /// Forgets all iterates and rejections. `memory` 0 is the method's default. Allocates only what is not there yet.
-    pub(super) fn reset(&mut self, memory: u32, point_count: usize) {
+    /// Forgets rejections; returns how many pairs to remember. `memory` 0 is the method's default.
+    pub(super) fn reset(&mut self, memory: u32) -> usize {
         let default = match self.method {
             Method::Anderson(_) => ANDERSON_MEMORY,
             Method::QuasiNewton(_) => QUASI_NEWTON_MEMORY,
         };
         let capacity = if memory == 0 { default } else { memory } as usize;
-        self.history.reset(capacity, point_count);
         self.combination.reset(capacity);
         match &mut self.method {
             Method::Anderson(anderson) => anderson.reset(capacity),
             Method::QuasiNewton(quasi_newton) => quasi_newton.reset(capacity),
         }
+        (self.is_discouraged, self.rejections) = (false, Rejections::default());
+        capacity
+    }
+
+    /// Chooses the direction from the newest iterate, of `energy`. True if there is one to try: none in the first iteration,
+    /// which is the plain step.
+    pub(super) fn choose(&mut self, products: &mut Products, energy: f64) -> bool {
+        match &mut self.method {
+            Method::Anderson(anderson) => {
+                let left_out = anderson.combine(products, &mut self.combination);
+                self.rejections.ill_conditioned += u32::from(left_out > 0);
+            }
+            Method::QuasiNewton(quasi_newton) => {
+                if products.len() > 0 && !QuasiNewton::is_newest_curved(products) {
+                    products.forget_newest();
+                    self.rejections.ill_conditioned += 1;
+                }
+                if products.len() > 0 {
+                    quasi_newton.combine(products, &mut self.combination);
+                }
+            }
+        }
+        if products.len() == 0 {
+            return false;
+        }
+        let slope = -products.plain_along(&self.combination);
+        // False for NaN too.
+        if !(slope < 0.0 && slope.is_finite()) {
+            self.rejections.not_descent += 1;
+            products.forget_pairs();
+            return false;
+        }
+        self.search = match self.method {
+            Method::Anderson(_) => LineSearch::one_length(energy, slope),
+            Method::QuasiNewton(_) if self.is_discouraged => LineSearch::one_length(energy, slope),
+            Method::QuasiNewton(_) => LineSearch::new(energy, slope),
+        };
+        true
+    }
+
+    /// How far along the direction the next trial is; `None` if there is none left.
+    pub(super) fn next_length(&mut self) -> Option<f64> {
+        let length = self.search.next();
+        if length.is_none() {
+            self.rejections.line_search += 1;
+            self.is_discouraged = true;
+        }
+        length
+    }
+
+    /// True if `energy`, found at the last trial, is low enough for it to be accepted.
+    pub(super) fn accepts(&mut self, energy: f64) -> bool {
+        if self.search.accepts(energy) {
+            self.is_discouraged = false;
+            return true;
+        }
+        let count = if energy.is_finite() { &mut self.rejections.energy_rose } else { &mut self.rejections.not_finite };
+        *count += 1;
+        false
+    }
+}
+
+/// The state of one accelerated solve. Its memory is kept for the next one, its contents are not: whatever happened in
+/// between (points set, constraints edited, a new time step) changed what the old iterates say.
+#[derive(Debug)]
+pub(super) struct Accelerator {
+    chooser: Chooser,
+    history: History,
+    /// The points that the iteration began at, and the direction from them.
+    start: Vec<DVec3>,
+    direction: Vec<DVec3>,
+}
+
+impl Accelerator {
+    /// For `acceleration`; `None` if that is none. `Automatic` must have been decided on.
+    pub(super) fn new(acceleration: Acceleration) -> Option<Self> {
+        let chooser = Chooser::new(acceleration)?;
+        Some(Self { chooser, history: History::default(), start: Vec::new(), direction: Vec::new() })
+    }
+
+    /// True if this is what `acceleration` needs.
+    pub(super) fn serves(&self, acceleration: Acceleration) -> bool {
+        self.chooser.serves(acceleration)
+    }
+
+    /// Forgets all iterates and rejections. `memory` 0 is the method's default. Allocates only what is not there yet.
+    pub(super) fn reset(&mut self, memory: u32, point_count: usize) {
+        let capacity = self.chooser.reset(memory);
+        self.history.reset(capacity, point_count);
         for vector in [&mut self.start, &mut self.direction] {
             vector.clear();
             vector.resize(point_count, DVec3::ZERO);
         }
-        (self.is_discouraged, self.rejections) = (false, Rejections::default());
+    }
+
+    /// What was tried in vain.
+    pub(super) fn rejections(&self) -> Rejections {
+        self.chooser.rejections
     }
 
     /// True if the vectors are long enough to gain from more than one thread.
@@ -121,46 +205,17 @@ impl Accelerator {
     ) -> bool {
         self.start.copy_from_slice(points);
         self.history.push(points, plain, Some(image), is_parallel);
-        match &mut self.method {
-            Method::Anderson(anderson) => {
-                let left_out = anderson.combine(&self.history, &mut self.combination);
-                self.rejections.ill_conditioned += u32::from(left_out > 0);
-            }
-            Method::QuasiNewton(quasi_newton) => {
-                if self.history.len() > 0 && !QuasiNewton::is_newest_curved(&self.history) {
-                    self.history.forget_newest();
-                    self.rejections.ill_conditioned += 1;
-                }
-                if self.history.len() > 0 {
-                    quasi_newton.combine(&self.history, &mut self.combination);
-                }
-            }
+        let has_direction = self.chooser.choose(self.history.products_mut(), energy);
+        if has_direction {
+            self.history.combine(&self.chooser.combination, &mut self.direction, is_parallel);
         }
-        if self.history.len() == 0 {
-            return false;
-        }
-        let slope = -self.history.plain_along(&self.combination);
-        // False for NaN too.
-        if !(slope < 0.0 && slope.is_finite()) {
-            self.rejections.not_descent += 1;
-            self.history.forget_pairs();
-            return false;
-        }
-        self.history.combine(&self.combination, &mut self.direction, is_parallel);
-        self.search = match self.method {
-            Method::Anderson(_) => LineSearch::one_length(energy, slope),
-            Method::QuasiNewton(_) if self.is_discouraged => LineSearch::one_length(energy, slope),
-            Method::QuasiNewton(_) => LineSearch::new(energy, slope),
-        };
-        true
+        has_direction
     }
 
     /// Moves `points` to the next trial along the direction. False if there is none left; `points` are then as they were.
     pub(super) fn place_trial(&mut self, points: &mut [DVec3]) -> bool {
-        let Some(length) = self.search.next() else {
+        let Some(length) = self.chooser.next_length() else {
             points.copy_from_slice(&self.start);
-            self.rejections.line_search += 1;
-            self.is_discouraged = true;
             return false;
         };
         for ((point, start), direction) in points.iter_mut().zip(&self.start).zip(&self.direction) {
@@ -171,13 +226,7 @@ impl Accelerator {
 
     /// True if `energy`, found at the last trial, is low enough for it to be accepted.
     pub(super) fn accepts(&mut self, energy: f64) -> bool {
-        if self.search.accepts(energy) {
-            self.is_discouraged = false;
-            return true;
-        }
-        let count = if energy.is_finite() { &mut self.rejections.energy_rose } else { &mut self.rejections.not_finite };
-        *count += 1;
-        false
+        self.chooser.accepts(energy)
     }
 
     /// The largest move of a point since the iteration began.
@@ -306,23 +355,23 @@ mod tests {
                 assert!(*x == before);
                 let (energy_rose, not_finite) = if told.is_finite() { (trials, 0) } else { (0, trials) };
                 let expected = Rejections { energy_rose, not_finite, line_search: 1, ..Rejections::default() };
-                assert_eq!(accelerator.rejections, expected, "{acceleration:?}");
+                assert_eq!(accelerator.rejections(), expected, "{acceleration:?}");
             }
         }
         // Along a move where the energy bends down (a curvature below 0) nothing can be learned.
         let mut state = after_one_step(Acceleration::QuasiNewton, &[-0.2]);
         assert!(!propose(&mut state));
-        assert_eq!(state.0.rejections, Rejections { ill_conditioned: 1, ..Rejections::default() });
+        assert_eq!(state.0.rejections(), Rejections { ill_conditioned: 1, ..Rejections::default() });
         // Two moves that changed the plain step alike: one of them is left out.
         let mut state = after_one_step(Acceleration::Anderson, &[0.1]);
         assert!(propose(&mut state));
         state.2 = state.1.plain(&state.2)[0].clone();
         assert!(propose(&mut state));
-        assert_eq!(state.0.rejections, Rejections { ill_conditioned: 1, ..Rejections::default() });
+        assert_eq!(state.0.rejections(), Rejections { ill_conditioned: 1, ..Rejections::default() });
         // An energy that is highest where Anderson sees the fixed point: the way there goes up.
         let mut state = after_one_step(Acceleration::Anderson, &[-0.2]);
         assert!(!propose(&mut state));
-        assert_eq!(state.0.rejections, Rejections { not_descent: 1, ..Rejections::default() });
+        assert_eq!(state.0.rejections(), Rejections { not_descent: 1, ..Rejections::default() });
     }
 
     #[test]

@@ -11,7 +11,7 @@
 //! Sources: Walker and Ni 2011, "Anderson acceleration for fixed-point iterations"; Peng et al. 2018, "Anderson
 //! acceleration for geometry optimization and physics simulation", which measures in the plain norm.
 
-use super::history::{Combination, History};
+use super::history::{Combination, Products};
 
 /// A change whose part that newer changes do not span is below the root of this, relative to its length, is left out:
 /// its coefficient would be made of round-off. Products of vectors are good to some 1e-15 of their size.
@@ -33,11 +33,11 @@ impl Anderson {
     }
 
     /// Writes the direction to try. Returns the number of pairs that were left out as the others span them.
-    pub(super) fn combine(&mut self, history: &History, combination: &mut Combination) -> usize {
-        let m = history.len();
+    pub(super) fn combine(&mut self, products: &Products, combination: &mut Combination) -> usize {
+        let m = products.len();
         let (l, theta) = (&mut self.factor, &mut self.theta);
         // A change of length 0, as exact fixed points have, spans nothing: it is left out.
-        let scale = |i: usize| match history.change_change(i, i) {
+        let scale = |i: usize| match products.change_change(i, i) {
             squared if squared > 0.0 => 1.0 / squared.sqrt(),
             _ => 0.0,
         };
@@ -47,7 +47,7 @@ impl Anderson {
             for j in 0..i {
                 let known: f64 = (0..j).map(|k| l[i * m + k] * l[j * m + k]).sum();
                 let pivot = l[j * m + j];
-                let rest = history.change_change(i, j) * scale(i) * scale(j) - known;
+                let rest = products.change_change(i, j) * scale(i) * scale(j) - known;
                 l[i * m + j] = if pivot > 0.0 { rest / pivot } else { 0.0 };
             }
             let pivot = 1.0 - (0..i).map(|k| l[i * m + k] * l[i * m + k]).sum::<f64>();
@@ -61,7 +61,7 @@ impl Anderson {
         let is_used = |l: &[f64], i: usize| l[i * m + i] > 0.0;
         for i in 0..m {
             let known: f64 = (0..i).map(|k| l[i * m + k] * theta[k]).sum();
-            theta[i] = if is_used(l, i) { (history.change_plain(i) * scale(i) - known) / l[i * m + i] } else { 0.0 };
+            theta[i] = if is_used(l, i) { (products.change_plain(i) * scale(i) - known) / l[i * m + i] } else { 0.0 };
         }
         for i in (0..m).rev().filter(|&i| is_used(l, i)) {
             let known: f64 = (i + 1..m).map(|k| l[k * m + i] * theta[k]).sum();

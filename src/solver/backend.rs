@@ -1,9 +1,17 @@
 //! Which machine iterates: the processor, or the graphics card.
 
+use std::time::Instant;
+
 use glam::DVec3;
 
-use super::Solver;
+use super::{ProgressFn, SolveOptions, Solver};
+#[cfg(not(feature = "gpu"))]
+use super::{Outcome, Report};
 use crate::error::{Error, Result, Status};
+
+/// Why there is no card.
+#[cfg(not(feature = "gpu"))]
+const WITHOUT_CARD: &str = "this library was built without the feature \"gpu\"";
 
 /// What carries out the iterations of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -103,8 +111,7 @@ pub fn backend_info(options: &BackendOptions) -> Result<BackendInfo> {
     #[cfg(not(feature = "gpu"))]
     {
         let _ = options;
-        let reason = "this library was built without the feature \"gpu\"";
-        Err(Error::new(Status::BackendUnavailable, reason))
+        Err(Error::new(Status::BackendUnavailable, WITHOUT_CARD))
     }
 }
 
@@ -113,6 +120,15 @@ pub fn backend_info(options: &BackendOptions) -> Result<BackendInfo> {
 pub fn release_backend() {
     #[cfg(feature = "gpu")]
     super::gpu::Card::release();
+}
+
+/// What goes on in a solve.
+pub(super) struct Course<'a, 'b> {
+    pub(super) options: &'a SolveOptions,
+    pub(super) started: Instant,
+    /// The diagonal of the bounding box.
+    pub(super) diagonal: f64,
+    pub(super) progress: &'a mut ProgressFn<'b>,
 }
 
 impl Solver {
@@ -126,6 +142,7 @@ impl Solver {
             backend_info(&self.backend_options)?;
         }
         self.backend = backend;
+        self.forget_card();
         Ok(())
     }
 
@@ -137,6 +154,22 @@ impl Solver {
     /// Chooses the adapter, and how much of it the following solves may use.
     pub fn set_backend_options(&mut self, options: &BackendOptions) {
         self.backend_options = options.clone();
+        self.forget_card();
+    }
+
+    /// Why an exploration runs where it runs.
+    pub(super) fn reason_of_exploration(&self) -> String {
+        match self.backend {
+            Backend::Automatic => "the processor accelerates sweeps, and a card does not".to_owned(),
+            _ => "as asked for".to_owned(),
+        }
+    }
+
+    fn forget_card(&mut self) {
+        #[cfg(feature = "gpu")]
+        {
+            self.on_card = super::on_card::OnCard::default();
+        }
     }
 
     /// The adapter of this solver. The first call takes a while: it opens it.
@@ -180,5 +213,34 @@ impl Solver {
             }
         }
         Ok(found)
+    }
+}
+
+/// What a library without the feature does where the other turns to the card: nothing.
+#[cfg(not(feature = "gpu"))]
+impl Solver {
+    pub(super) fn prepare_card(&mut self) -> Result<()> {
+        Ok(())
+    }
+
+    pub(super) fn turns_to_card(&self, _report: &Report) -> bool {
+        false
+    }
+
+    pub(super) fn iterate_on_card(&mut self, _report: &mut Report, _course: &mut Course<'_, '_>) -> Option<Outcome> {
+        None
+    }
+
+    pub(super) fn iterate_on_backends(&mut self, _iterations: u32) -> Result<u32> {
+        Ok(0)
+    }
+
+    pub(super) fn cpu_iterated(&mut self, _iterations: u32, _started: Instant) {}
+
+    pub(super) fn tell_backend(&self, report: &mut Report) {
+        report.backend_reason = match self.backend {
+            Backend::Automatic => WITHOUT_CARD.to_owned(),
+            _ => "as asked for".to_owned(),
+        };
     }
 }

@@ -28,20 +28,35 @@ const LAST: usize = 3;
 /// Products of each pair with the newest iterate: `⟨s, f⟩`, `⟨d, f⟩`, `⟨s, d'⟩` and `⟨d, d'⟩`, `d'` being the newest change.
 const PRODUCTS: usize = 4;
 
-/// The last iterates, the oldest pair replaced by the newest.
+/// The inner products of the last pairs, the oldest replaced by the newest: what accelerators see of a history. Where the vectors
+/// are is the history's business.
 #[derive(Debug, Default)]
-pub(super) struct History {
+pub(super) struct Products {
     /// Pairs at most.
     capacity: usize,
-    /// True if `N` is the identity and moves are taken with the coefficient of the change alone: `s_i + d_i` lies in the
-    /// place of `s_i` then, which is the change of `G(x)`, and there are no products with it.
-    is_euclidean: bool,
     /// Pairs held.
     length: usize,
     /// The place of the newest pair.
     newest: usize,
     /// True once there is an iterate for the next to differ from.
     is_started: bool,
+    /// `⟨s_i, d_j⟩` at the places `i * capacity + j`, for `i` at least as old as `j`.
+    move_change: Vec<f64>,
+    /// `⟨d_i, d_j⟩` likewise, for all `i` and `j`.
+    change_change: Vec<f64>,
+    /// `⟨s_i, f⟩` and `⟨d_i, f⟩` by place, `f` being the plain step at the last iterate.
+    move_plain: Vec<f64>,
+    change_plain: Vec<f64>,
+    plain_plain: f64,
+}
+
+/// The last iterates.
+#[derive(Debug, Default)]
+pub(super) struct History {
+    products: Products,
+    /// True if `N` is the identity and moves are taken with the coefficient of the change alone: `s_i + d_i` lies in the
+    /// place of `s_i` then, which is the change of `G(x)`, and there are no products with it.
+    is_euclidean: bool,
     /// Numbers of one vector in a chunk.
     width: usize,
     /// Every chunk's numbers, one chunk after the other, and the pairs and points they are laid out for.
@@ -53,14 +68,6 @@ pub(super) struct History {
     point_bounds: Vec<usize>,
     /// One entry per chunk, of no meaning.
     results: Vec<f64>,
-    /// `⟨s_i, d_j⟩` at the places `i * capacity + j`, for `i` at least as old as `j`.
-    move_change: Vec<f64>,
-    /// `⟨d_i, d_j⟩` likewise, for all `i` and `j`.
-    change_change: Vec<f64>,
-    /// `⟨s_i, f⟩` and `⟨d_i, f⟩` by place, `f` being the plain step at the last iterate.
-    move_plain: Vec<f64>,
-    change_plain: Vec<f64>,
-    plain_plain: f64,
 }
 
 /// The direction `plain · f + Σ moves_i s_i + Σ changes_i d_i` from the last iterate. Index 0 is the newest pair.
@@ -85,7 +92,7 @@ impl Combination {
 impl History {
     /// Forgets everything, and has room for `capacity` pairs (at least 1) of `point_count` points from now on.
     pub(super) fn reset(&mut self, capacity: usize, point_count: usize) {
-        (self.capacity, self.length, self.newest, self.is_started) = (capacity, 0, 0, false);
+        self.products.reset(capacity);
         // Chunks of about the same length: a short one would take as much memory as the others.
         let even = point_count.div_ceil(point_count.div_ceil(CHUNK_POINTS).max(1));
         let chunk_points = even.next_multiple_of(STEP_POINTS).max(STEP_POINTS);
@@ -103,30 +110,16 @@ impl History {
             self.layout = (capacity, point_count);
         }
         self.results.resize(chunk_count, 0.0);
-        for products in [&mut self.move_change, &mut self.change_change] {
-            products.resize(capacity * capacity, 0.0);
-        }
-        for products in [&mut self.move_plain, &mut self.change_plain] {
-            products.resize(capacity, 0.0);
-        }
     }
 
-    /// Forgets all pairs; the last iterate stays, for the next to differ from.
-    pub(super) fn forget_pairs(&mut self) {
-        self.length = 0;
+    /// What accelerators see.
+    pub(super) fn products(&self) -> &Products {
+        &self.products
     }
 
-    /// Forgets the newest pair, if there is one.
-    pub(super) fn forget_newest(&mut self) {
-        if self.length > 0 {
-            self.length -= 1;
-            self.newest = (self.newest + self.capacity - 1) % self.capacity;
-        }
-    }
-
-    /// The number of pairs.
-    pub(super) fn len(&self) -> usize {
-        self.length
+    /// The same, for accelerators to forget pairs.
+    pub(super) fn products_mut(&mut self) -> &mut Products {
+        &mut self.products
     }
 
     /// Adds the iterate `points`, the plain step's result `plain = G(points)`, and `image = N (plain − points)`; `None`
@@ -134,13 +127,8 @@ impl History {
     pub(super) fn push(&mut self, points: &[DVec3], plain: &[DVec3], image: Option<&[DVec3]>, is_parallel: bool) {
         let is_euclidean = image.is_none();
         self.is_euclidean = is_euclidean;
-        let is_pair = self.is_started;
-        if is_pair {
-            self.newest = (self.newest + 1) % self.capacity;
-            self.length = (self.length + 1).min(self.capacity);
-        }
-        self.is_started = true;
-        let (capacity, newest, length) = (self.capacity, self.newest, self.length);
+        let is_pair = self.products.start_iterate();
+        let Products { capacity, newest, length, .. } = self.products;
         let (bounds, width) = (&self.point_bounds, self.width);
         let work = |chunk: usize, data: &mut [f64], _: &mut f64| {
             let range = bounds[chunk]..bounds[chunk + 1];
@@ -173,7 +161,7 @@ impl History {
                     (&*last_image, &*new_image_change)
                 }
             };
-            for place in (0..length).map(|age| (newest + capacity - age) % capacity) {
+            for place in (0..length).map(|age| place(capacity, newest, age)) {
                 let (s, d) = pairs[2 * place * width..][..2 * width].split_at(width);
                 let products = &mut products[PRODUCTS * place..][..PRODUCTS];
                 (products[1], products[3]) = (dot(d, step), dot(d, step_change));
@@ -187,20 +175,13 @@ impl History {
         let first = (LAST + 2 * capacity) * width;
         let (data, starts) = (&self.data, &self.data_bounds[..self.results.len()]);
         let total = |product: usize| starts.iter().map(|start| data[start + first + product]).sum::<f64>();
-        self.plain_plain = total(PRODUCTS * capacity);
-        for place in (0..length).map(|age| (newest + capacity - age) % capacity) {
-            self.move_plain[place] = total(PRODUCTS * place);
-            self.change_plain[place] = total(PRODUCTS * place + 1);
-            self.move_change[place * capacity + newest] = total(PRODUCTS * place + 2);
-            let both = total(PRODUCTS * place + 3);
-            self.change_change[place * capacity + newest] = both;
-            self.change_change[newest * capacity + place] = both;
-        }
+        let of_place = |place: usize| std::array::from_fn(|n| total(PRODUCTS * place + n));
+        self.products.set(total(PRODUCTS * capacity), of_place);
     }
 
     /// Writes the direction that `combination` describes, one entry per point.
     pub(super) fn combine(&mut self, combination: &Combination, direction: &mut [DVec3], is_parallel: bool) {
-        let (capacity, newest, length) = (self.capacity, self.newest, self.length);
+        let Products { capacity, newest, length, .. } = self.products;
         let (data, bounds, width) = (&self.data, &self.data_bounds, self.width);
         let is_euclidean = self.is_euclidean;
         let work = |chunk: usize, direction: &mut [DVec3], _: &mut f64| {
@@ -209,7 +190,7 @@ impl History {
             let sum = &mut sum[..width];
             sum.iter_mut().zip(&data[width..]).for_each(|(sum, f)| *sum = combination.plain * f);
             for age in 0..length {
-                let place = (newest + capacity - age) % capacity;
+                let place = place(capacity, newest, age);
                 let (s, d) = data[(LAST + 2 * place) * width..][..2 * width].split_at(width);
                 let (a, b) = (combination.moves[age], combination.changes[age]);
                 if is_euclidean {
@@ -223,6 +204,79 @@ impl History {
             }
         };
         for_parts(&self.point_bounds, direction, &mut self.results, is_parallel, &work);
+    }
+}
+
+/// Where the pair of this age (0: the newest) lies.
+fn place(capacity: usize, newest: usize, age: usize) -> usize {
+    (newest + capacity - age) % capacity
+}
+
+impl Products {
+    /// Forgets everything, and has room for `capacity` pairs (at least 1) from now on.
+    pub(super) fn reset(&mut self, capacity: usize) {
+        (self.capacity, self.length, self.newest, self.is_started) = (capacity, 0, 0, false);
+        for products in [&mut self.move_change, &mut self.change_change] {
+            products.resize(capacity * capacity, 0.0);
+        }
+        for products in [&mut self.move_plain, &mut self.change_plain] {
+            products.resize(capacity, 0.0);
+        }
+    }
+
+    /// Makes room for the next iterate. True if it makes a pair with the last one, which then is the newest.
+    pub(super) fn start_iterate(&mut self) -> bool {
+        let is_pair = self.is_started;
+        if is_pair {
+            self.newest = (self.newest + 1) % self.capacity;
+            self.length = (self.length + 1).min(self.capacity);
+        }
+        self.is_started = true;
+        is_pair
+    }
+
+    /// Where the newest pair lies, or will.
+    #[cfg(feature = "gpu")]
+    pub(super) fn newest_place(&self) -> usize {
+        self.newest
+    }
+
+    /// Where the pairs lie, the newest first.
+    pub(super) fn places(&self) -> impl Iterator<Item = usize> + use<> {
+        let (capacity, newest) = (self.capacity, self.newest);
+        (0..self.length).map(move |age| place(capacity, newest, age))
+    }
+
+    /// Takes the products with the newest iterate: `⟨f, f⟩`, and of the pair at each place `⟨s, f⟩`, `⟨d, f⟩`, `⟨s, d'⟩` and
+    /// `⟨d, d'⟩`, `d'` being the newest change.
+    pub(super) fn set(&mut self, plain_plain: f64, of_place: impl Fn(usize) -> [f64; PRODUCTS]) {
+        self.plain_plain = plain_plain;
+        let (capacity, newest) = (self.capacity, self.newest);
+        for place in self.places() {
+            let [move_plain, change_plain, move_change, both] = of_place(place);
+            (self.move_plain[place], self.change_plain[place]) = (move_plain, change_plain);
+            self.move_change[place * capacity + newest] = move_change;
+            self.change_change[place * capacity + newest] = both;
+            self.change_change[newest * capacity + place] = both;
+        }
+    }
+
+    /// Forgets all pairs; the last iterate stays, for the next to differ from.
+    pub(super) fn forget_pairs(&mut self) {
+        self.length = 0;
+    }
+
+    /// Forgets the newest pair, if there is one.
+    pub(super) fn forget_newest(&mut self) {
+        if self.length > 0 {
+            self.length -= 1;
+            self.newest = (self.newest + self.capacity - 1) % self.capacity;
+        }
+    }
+
+    /// The number of pairs.
+    pub(super) fn len(&self) -> usize {
+        self.length
     }
 
     /// `‖f‖²`.
@@ -259,11 +313,10 @@ impl History {
     }
 
     fn place(&self, age: usize) -> usize {
-        (self.newest + self.capacity - age) % self.capacity
+        place(self.capacity, self.newest, age)
     }
 }
 
-/// `aᵀ b` of two vectors of a chunk, in eight sums that do not wait for each other.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     for (a, b) in a.chunks_exact(8).zip(b.chunks_exact(8)) {
@@ -299,7 +352,7 @@ mod tests {
         for [points, plain, image] in &iterates {
             history.push(points, plain, Some(image), false);
         }
-        assert_eq!(history.len(), capacity);
+        assert_eq!(history.products().len(), capacity);
         let step = |k: usize, i: usize| iterates[k][1][i] - iterates[k][0][i];
         let moved = |age: usize, i: usize| iterates[5 - age][0][i] - iterates[4 - age][0][i];
         let changed = |age: usize, i: usize| step(5 - age, i) - step(4 - age, i);
@@ -315,12 +368,12 @@ mod tests {
         combination.plain = 0.75;
         for a in 0..capacity {
             (combination.moves[a], combination.changes[a]) = (0.5 - a as f64, 1.5 + a as f64);
-            assert_near(history.move_plain(a), product(&|i| moved(a, i), &f));
-            assert_near(history.change_plain(a), product(&|i| changed(a, i), &f));
+            assert_near(history.products().move_plain(a), product(&|i| moved(a, i), &f));
+            assert_near(history.products().change_plain(a), product(&|i| changed(a, i), &f));
             for b in 0..capacity {
-                assert_near(history.change_change(a, b), product(&|i| changed(a, i), &|i| changed(b, i)));
+                assert_near(history.products().change_change(a, b), product(&|i| changed(a, i), &|i| changed(b, i)));
                 if b <= a {
-                    assert_near(history.move_change(a, b), product(&|i| moved(a, i), &|i| changed(b, i)));
+                    assert_near(history.products().move_change(a, b), product(&|i| moved(a, i), &|i| changed(b, i)));
                 }
             }
         }
@@ -331,7 +384,7 @@ mod tests {
             0.75 * f(i) + (0..capacity).map(pairs).sum::<DVec3>()
         };
         assert!((0..n).all(|i| (direction[i] - expected(i)).length() < 1e-13));
-        assert_near(history.plain_along(&combination), product(&f, &|i| direction[i]));
+        assert_near(history.products().plain_along(&combination), product(&f, &|i| direction[i]));
     }
 
     #[test]
@@ -383,7 +436,7 @@ mod tests {
             combination.changes.fill(-0.7);
             let mut direction = vec![DVec3::ZERO; n];
             history.combine(&combination, &mut direction, is_parallel);
-            let products = [history.plain_along(&combination), history.change_change(1, 2), history.move_change(3, 0)];
+            let products = [history.products().plain_along(&combination), history.products().change_change(1, 2), history.products().move_change(3, 0)];
             (direction, products.map(f64::to_bits))
         };
         let serial = run(false);

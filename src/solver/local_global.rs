@@ -6,6 +6,7 @@ use std::time::Instant;
 use glam::DVec3;
 
 use super::Workspace;
+use super::backend::Course;
 use super::acceleration::Accelerator;
 use super::{
     Backend, Dynamics, LinearSolver, Outcome, Progress, ProgressFn, Rejections, Report, STALL_ITERATIONS, SolveOptions,
@@ -24,11 +25,16 @@ impl Solver {
     pub fn solve(&mut self, iterations: u32) -> Result<()> {
         if self.explores() {
             let options = SolveOptions { max_iterations: iterations, tolerance: 0.0, time_budget_seconds: 0.0 };
-            return self.explore(&options, false, &mut |_| ControlFlow::Continue(())).map(drop);
+            let report = self.explore(&options, false, &mut |_| ControlFlow::Continue(()))?;
+            return match report.outcome {
+                Outcome::BackendFailed => Err(Error::new(Status::BackendFailed, report.message)),
+                _ => Ok(()),
+            };
         }
         self.run(|solver| {
-            solver.on_pool(|solver, is_parallel| solver.iterate_blindly(iterations, is_parallel));
-            true
+            let made = solver.iterate_on_backends(iterations)?;
+            solver.on_pool(|solver, is_parallel| solver.iterate_blindly(iterations - made, is_parallel));
+            Ok(true)
         })
     }
 
@@ -49,7 +55,7 @@ impl Solver {
             return self.explore(options, true, progress);
         }
         let mut found = None;
-        let result = self.run(|solver| found.insert(solver.iterate(options, progress)).is_finite());
+        let result = self.run(|solver| Ok(found.insert(solver.iterate(options, progress)).is_finite()));
         let mut report = match result {
             Ok(()) => found.unwrap_or_else(Report::empty),
             Err(error) if error.status() == Status::Unbounded => {
@@ -79,15 +85,23 @@ impl Solver {
     }
 
     /// Brings the system up to date, sets up the external terms, runs `iterations` and, in dynamic mode, ends the time
-    /// step. `iterations` returns false where a number overflowed. If anything fails, points and energy are as before.
-    fn run(&mut self, iterations: impl FnOnce(&mut Self) -> bool) -> Result<()> {
+    /// step. `iterations` returns false where a number overflowed. If anything fails, points and energy are as before, but for
+    /// a card that failed: the points are then those that were read back last.
+    fn run(&mut self, iterations: impl FnOnce(&mut Self) -> Result<bool>) -> Result<()> {
         self.prepare()?;
+        self.prepare_card()?;
         self.workspace.swap_external();
         let result = self.begin().and_then(|()| {
-            let is_finite = iterations(self) && self.points.iter().all(|point| point.is_finite());
-            if is_finite && self.end_step() { Ok(()) } else { Err(overflow()) }
+            let made = iterations(self);
+            match &made {
+                Err(error) if error.status() != Status::BackendFailed => return made.map(drop),
+                _ => {}
+            }
+            let is_finite = !matches!(made, Ok(false)) && self.points.iter().all(|point| point.is_finite());
+            if is_finite && self.end_step() { made.map(drop) } else { Err(overflow()) }
         });
-        if result.is_err() {
+        let has_kept_points = result.as_ref().is_err_and(|error| error.status() == Status::BackendFailed);
+        if result.is_err() && !has_kept_points {
             self.points.copy_from_slice(&self.workspace.start);
             self.workspace.swap_external();
         }
@@ -156,7 +170,7 @@ impl Solver {
     }
 
     /// So many iterations, whatever comes of them.
-    fn iterate_blindly(&mut self, iterations: u32, is_parallel: bool) {
+    pub(super) fn iterate_blindly(&mut self, iterations: u32, is_parallel: bool) {
         let mut clock = Clock::default();
         if let Some(mut accelerator) = self.begin_acceleration(Acceleration::None) {
             let mut energy = self.local_step(true, is_parallel, &mut clock);
@@ -183,11 +197,26 @@ impl Solver {
         let energy = self.on_pool(|solver, is_parallel| solver.local_step(true, is_parallel, &mut clock));
         let mut report = Report { energy_before: energy, energy_after: energy, ..Report::empty() };
         let (mut least_energy, mut least_move, mut stalled_for) = (energy, f64::INFINITY, 0);
-        for iteration in 1..=options.max_iterations {
+        while report.iterations < options.max_iterations {
+            let mut course = Course { options, started, diagonal, progress: &mut *progress };
+            if self.turns_to_card(&report) {
+                let ended = self.iterate_on_card(&mut report, &mut course);
+                // In double precision; the processor goes on from here, with nothing to remember.
+                report.energy_after = self.on_pool(|solver, is_parallel| solver.local_step(true, is_parallel, &mut clock));
+                accelerator = self.begin_acceleration(Acceleration::QuasiNewton);
+                if let Some(outcome) = ended {
+                    report.outcome = outcome;
+                    break;
+                }
+                continue;
+            }
+            let iterating = Instant::now();
+            let iteration = report.iterations + 1;
             let step = self.on_pool(|solver, is_parallel| match &mut accelerator {
                 Some(accelerator) => solver.accelerated_step(accelerator, report.energy_after, is_parallel, &mut clock),
                 None => solver.plain_step(is_parallel, &mut clock),
             });
+            self.cpu_iterated(1, iterating);
             report.largest_move = step.largest_move / diagonal;
             report.energy_after = step.energy;
             report.iterations = iteration;
@@ -223,9 +252,10 @@ impl Solver {
         }
         (report.local_seconds, report.global_seconds) = (clock.local_seconds, clock.global_seconds);
         if let Some(accelerator) = &accelerator {
-            report.rejections = accelerator.rejections;
+            report.rejections += accelerator.rejections();
         }
         self.accelerator = accelerator;
+        self.tell_backend(&mut report);
         report
     }
 
@@ -234,19 +264,24 @@ impl Solver {
         if self.forces.has_forces_on_faces() {
             return None;
         }
-        let wanted = match self.acceleration {
-            Acceleration::Automatic => automatic,
-            stated => stated,
-        };
+        let wanted = self.acceleration_or(automatic);
         let kept = self.accelerator.take().filter(|kept| kept.serves(wanted));
         let mut accelerator = kept.or_else(|| Accelerator::new(wanted))?;
         accelerator.reset(self.acceleration_memory, self.points.len());
         Some(accelerator)
     }
 
+    /// The acceleration that was set; `automatic` is what `Automatic` means.
+    pub(super) fn acceleration_or(&self, automatic: Acceleration) -> Acceleration {
+        match self.acceleration {
+            Acceleration::Automatic => automatic,
+            stated => stated,
+        }
+    }
+
     /// Runs `work` on the pool, where it is told that it may use more than one thread, if the system is large enough for that;
     /// else here. Entering the pool costs some 10 µs.
-    fn on_pool<R: Send>(&mut self, work: impl FnOnce(&mut Self, bool) -> R + Send) -> R {
+    pub(super) fn on_pool<R: Send>(&mut self, work: impl FnOnce(&mut Self, bool) -> R + Send) -> R {
         match self.pool_if_long() {
             Some(pool) => pool.install(|| work(self, true)),
             None => work(self, false),
@@ -307,7 +342,7 @@ impl Solver {
     }
 
     /// Brings the forces on faces in `external` to the current points.
-    fn follow_points(&mut self) {
+    pub(super) fn follow_points(&mut self) {
         let factor = self.force_factor();
         let Workspace { forces, external, steady, normals, .. } = &mut self.workspace;
         if steady.is_empty() {

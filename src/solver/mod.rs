@@ -20,6 +20,8 @@ mod gpu;
 mod history;
 mod linear_solver;
 mod local_global;
+#[cfg(feature = "gpu")]
+mod on_card;
 mod parallel;
 mod quasi_newton;
 mod report;
@@ -74,6 +76,8 @@ pub struct Solver {
     linear_solver: LinearSolver,
     backend: Backend,
     backend_options: BackendOptions,
+    #[cfg(feature = "gpu")]
+    on_card: on_card::OnCard,
     thread_count: usize,
     pool: Option<Arc<rayon::ThreadPool>>,
     explorer: Explorer,
@@ -286,7 +290,11 @@ impl Solver {
     pub fn edit_constraint(&mut self, type_name: &str, id: ConstraintId, scalars: &[f64]) -> Result<()> {
         match self.constraints.edit(type_name, id, scalars)? {
             Edited::Nothing => {}
-            Edited::Targets => self.explorer.scalars_changed(),
+            Edited::Targets => {
+                self.explorer.scalars_changed();
+                #[cfg(feature = "gpu")]
+                self.on_card.scalars_changed();
+            }
             Edited::Rows => self.invalidate(),
         }
         Ok(())
@@ -500,6 +508,10 @@ impl Solver {
     /// Marks the system as outdated.
     fn invalidate(&mut self) {
         self.explorer.invalidate();
+        #[cfg(feature = "gpu")]
+        {
+            self.on_card = on_card::OnCard::default();
+        }
         if let Some(system) = self.system.take() {
             self.outdated_system = Some(system);
         }

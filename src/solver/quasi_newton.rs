@@ -9,7 +9,7 @@
 //! simulation of hyperelastic materials", who take `N` unscaled: 44 evaluations instead of 34 on the planar quads of
 //! docs/acceleration.md.
 
-use super::history::{Combination, History};
+use super::history::{Combination, Products};
 
 /// A pair whose curvature `⟨s, y⟩` is at most this part of `⟨y, y⟩` is forgotten: the energy bends down along it, or so
 /// little that the direction would be made of round-off. Where projections are onto convex sets the ratio is at least 1.
@@ -45,18 +45,18 @@ impl QuasiNewton {
     }
 
     /// True if the newest pair has the curvature of a minimum along it.
-    pub(super) fn is_newest_curved(history: &History) -> bool {
-        -history.move_change(0, 0) > LEAST_CURVATURE * history.change_change(0, 0)
+    pub(super) fn is_newest_curved(products: &Products) -> bool {
+        -products.move_change(0, 0) > LEAST_CURVATURE * products.change_change(0, 0)
     }
 
     /// Writes the direction to try. There is at least one pair, and all of them are curved.
-    pub(super) fn combine(&mut self, history: &History, combination: &mut Combination) {
-        let m = history.len();
+    pub(super) fn combine(&mut self, products: &Products, combination: &mut Combination) {
+        let m = products.len();
         let (alpha, beta) = (&mut self.alpha, &mut self.beta);
-        let sy = |i: usize, j: usize| -history.move_change(i, j);
-        let yy = |i: usize, j: usize| history.change_change(i, j);
+        let sy = |i: usize, j: usize| -products.move_change(i, j);
+        let yy = |i: usize, j: usize| products.change_change(i, j);
         // ⟨s_i, g⟩ and ⟨y_i, g⟩.
-        let (sg, yg) = (|i: usize| -history.move_plain(i), |i: usize| history.change_plain(i));
+        let (sg, yg) = (|i: usize| -products.move_plain(i), |i: usize| products.change_plain(i));
         for i in 0..m {
             let newer: f64 = (0..i).map(|j| alpha[j] * sy(i, j)).sum();
             alpha[i] = (sg(i) - newer) / sy(i, i);

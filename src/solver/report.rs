@@ -157,6 +157,16 @@ pub struct Rejections {
     pub line_search: u32,
 }
 
+impl std::ops::AddAssign for Rejections {
+    fn add_assign(&mut self, other: Self) {
+        self.energy_rose += other.energy_rose;
+        self.not_finite += other.not_finite;
+        self.ill_conditioned += other.ill_conditioned;
+        self.not_descent += other.not_descent;
+        self.line_search += other.line_search;
+    }
+}
+
 /// What a progress function sees after every iteration.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<'a> {

@@ -174,6 +174,26 @@ impl System {
         Ok(system)
     }
 
+    /// The matrix, the stiffness of all constraints by batch and slot, and the components that nothing holds against
+    /// translation.
+    #[cfg(feature = "gpu")]
+    pub(super) fn parts(&self) -> (&SymmetricMatrix, &[Vec<f64>], Vec<Vec<u32>>) {
+        let held = self.free_components.iter().filter(|component| component.held_stiffness > 0.0);
+        (&self.matrix, &self.stiffness, held.map(|component| component.points.clone()).collect())
+    }
+
+    /// True if a pull towards the current points is what makes the matrix definite.
+    #[cfg(feature = "gpu")]
+    pub(super) fn is_proximal(&self) -> bool {
+        !self.proximal.is_empty()
+    }
+
+    /// Weight times measure, by batch and slot.
+    #[cfg(feature = "gpu")]
+    pub(super) fn stiffness(&self) -> &[Vec<f64>] {
+        &self.stiffness
+    }
+
     /// What an iteration goes through; `None` without a factor.
     pub(super) fn iteration_bytes(&self, constraints: &ConstraintSet) -> Option<IterationBytes> {
         Some(IterationBytes {

@@ -1,6 +1,11 @@
 //! The graphics card against the processor. Runs on any adapter, the software one included.
 
+mod faults;
 mod kernels;
+#[path = "../../benches/models.rs"]
+#[allow(dead_code, reason = "each program takes what it needs")]
+mod models;
+mod problems;
 
 use shapeop::solver::{BackendOptions, backend_info};
 

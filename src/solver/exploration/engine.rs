@@ -11,6 +11,7 @@ use super::conflicts::{Priorities, Suspicion};
 use super::finish::{self, Finish, Finished, Residuals};
 use super::local::{self, Local};
 use super::newton::Kept;
+use super::on_card::{Ahead, CardState};
 use super::quadratic::ObjectiveTerms;
 use super::search::Search;
 use super::splitting::{Splitting, Sweep};
@@ -72,6 +73,7 @@ pub(super) struct Engine {
     /// How often caps were raised.
     pub(super) raises: u32,
     pub(super) course: Course,
+    pub(super) card: CardState,
     /// Where more than one thread pays: the pool.
     pub(super) pool: Option<Arc<rayon::ThreadPool>>,
     /// Seconds that the last judgement of the points took: a time budget has to leave them.
@@ -205,13 +207,41 @@ impl Engine {
         // While a handle moves, frames come before digits.
         let is_dragged = has_budget && explorer.has_new_targets;
         let follows = solver.forces.has_forces_on_faces();
+        let mut last_residual = None;
         // A contradiction stays one where nothing has changed.
         while found.sweeps < options.max_iterations && !self.course.is_settled() {
             if follows {
                 self.take_forces(solver, &solver.points);
             }
+            let ahead = match last_residual {
+                // Where the search counts sweeps, and before anything is known, the processor makes them.
+                Some(residual) if self.course.search.is_none() => {
+                    let most = options.max_iterations - found.sweeps - 1;
+                    report.iterations = found.sweeps;
+                    match self.sweep_ahead(solver, most, residual, &mut report, progress) {
+                        Ahead::Swept(count) => count,
+                        Ahead::Cancelled(count) => {
+                            found.sweeps += count;
+                            report.gpu_iterations += count;
+                            report.outcome = Outcome::Cancelled;
+                            break;
+                        }
+                        Ahead::Failed(count, why) => {
+                            found.sweeps += count;
+                            report.gpu_iterations += count;
+                            report.outcome = Outcome::BackendFailed;
+                            report.message = format!("{why}; the points are those after sweep {}", found.sweeps);
+                            break;
+                        }
+                    }
+                }
+                _ => 0,
+            };
+            report.gpu_iterations += ahead;
+            self.course.sweeps += ahead;
             let sweep = self.sweep();
-            found.sweeps += 1;
+            last_residual = Some(sweep.residual);
+            found.sweeps += ahead + 1;
             solver.points.copy_from_slice(&self.splitting.points);
             report.largest_move = sweep.largest_move / self.size;
             let are_finite = solver.points.iter().all(|point| point.is_finite());

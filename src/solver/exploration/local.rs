@@ -139,6 +139,12 @@ impl Local {
         item
     }
 
+    /// The constraints, with points of their own.
+    #[cfg(feature = "gpu")]
+    pub(super) fn own_set(&self) -> &ConstraintSet {
+        &self.set
+    }
+
     /// Takes over scalars and rest states of `set`, which has the same constraints with the same rows.
     pub(super) fn take_scalars(&mut self, set: &ConstraintSet) {
         self.set = set.clone();

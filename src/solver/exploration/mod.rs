@@ -17,6 +17,7 @@ mod engine;
 mod finish;
 mod local;
 mod newton;
+mod on_card;
 mod quadratic;
 mod search;
 mod sensitivity;
@@ -30,9 +31,10 @@ use glam::DVec3;
 use self::conflicts::Priorities;
 use self::engine::{Course, Engine, Memory, distances, extent};
 use self::newton::Kept;
+use self::on_card::CardState;
 use self::quadratic::Quadratic;
 use self::splitting::Splitting;
-use super::{ProgressFn, Report, SolveOptions, Solver};
+use super::{Backend, ProgressFn, Report, SolveOptions, Solver};
 use crate::constraints::ConstraintId;
 use crate::error::{Error, Result, Status, finite};
 use crate::problem::{FairnessRows, Mode, Objective};
@@ -232,7 +234,9 @@ impl Solver {
             result
         });
         explorer.has_new_targets = false;
-        let result = result.and_then(|(report, found)| {
+        let result = result.and_then(|(mut report, found)| {
+            report.backend = if report.gpu_iterations > 0 { Backend::Gpu } else { Backend::Cpu };
+            report.backend_reason = self.reason_of_exploration();
             let are_finite = self.points.iter().all(|point| point.is_finite());
             if are_finite && report.is_finite() && found.is_finite() {
                 explorer.found = Some(found);
@@ -289,6 +293,7 @@ impl Explorer {
         if self.has_new_scalars {
             engine.splitting.soft.take_scalars(&solver.constraints.part(false));
             engine.splitting.hard.take_scalars(&solver.constraints.part(true));
+            engine.card = CardState::default();
         }
         let have_moved = engine.splitting.points != solver.points;
         // Forces on faces are other ones at every sweep.
@@ -335,6 +340,7 @@ impl Explorer {
             priorities,
             raises: 0,
             course: Course::default(),
+            card: CardState::default(),
             pool: None,
             judge_seconds: 0.0,
             step_seconds: 0.0,

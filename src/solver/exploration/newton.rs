@@ -305,11 +305,11 @@ impl Krylov {
     /// Replaces `multipliers`, whose plain update is `next`.
     fn advance(&mut self, multipliers: &mut [DVec3], next: &[DVec3], is_parallel: bool) {
         self.history.push(multipliers, next, None, is_parallel);
-        if self.history.len() == 0 {
+        if self.history.products().len() == 0 {
             multipliers.copy_from_slice(next);
             return;
         }
-        self.anderson.combine(&self.history, &mut self.combination);
+        self.anderson.combine(self.history.products(), &mut self.combination);
         self.history.combine(&self.combination, &mut self.direction, is_parallel);
         multipliers.iter_mut().zip(&self.direction).for_each(|(multiplier, step)| *multiplier += *step);
     }

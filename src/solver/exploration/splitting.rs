@@ -28,7 +28,7 @@ use crate::solver::history::{Combination, History};
 use crate::solver::parallel::for_parts;
 
 /// Over-relaxation: fewer sweeps than 1 on every problem measured, and never refused.
-const RELAXATION: f64 = 1.6;
+pub(super) const RELAXATION: f64 = 1.6;
 
 /// Sweeps that Anderson acceleration remembers.
 const MEMORY: usize = 6;
@@ -160,6 +160,12 @@ impl Splitting {
         splitting.quadratic_changed();
         splitting.restart();
         Ok(splitting)
+    }
+
+    /// The matrix of the global step.
+    #[cfg(feature = "gpu")]
+    pub(super) fn matrix(&self) -> &SymmetricMatrix {
+        &self.matrix
     }
 
     /// To be called when targets or forces changed.
@@ -334,17 +340,17 @@ impl Accelerated {
         self.residual = residual;
         self.history.push(rows, next, None, is_parallel);
         std::mem::swap(&mut self.plain, next);
-        self.is_trial = self.history.len() > 0;
+        self.is_trial = self.history.products().len() > 0;
         if !self.is_trial {
             rows.copy_from_slice(&self.plain);
             return;
         }
-        self.anderson.combine(&self.history, &mut self.combination);
+        self.anderson.combine(self.history.products(), &mut self.combination);
         // What was the plain step before is no longer needed.
         let direction = next;
         self.history.combine(&self.combination, direction, is_parallel);
         // False for NaN.
-        if !(squared_length(direction) <= FARTHEST * FARTHEST * self.history.plain_squared()) {
+        if !(squared_length(direction) <= FARTHEST * FARTHEST * self.history.products().plain_squared()) {
             rows.copy_from_slice(&self.plain);
             return;
         }

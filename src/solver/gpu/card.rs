@@ -3,6 +3,7 @@
 //! Everything that can go wrong on a card ends as an [`Error`]: of status `BackendUnavailable` where nothing was begun (no
 //! adapter, not enough memory, a limit exceeded), of status `BackendFailed` where the card was lost or refused work.
 
+use std::cell::Cell;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -48,6 +49,11 @@ pub(in crate::solver) struct Run {
     pipeline: wgpu::ComputePipeline,
     bindings: wgpu::BindGroup,
     groups: [u32; 2],
+}
+
+thread_local! {
+    /// Bytes that the model at hand has on the card, and may have at most; see [`Card::within`].
+    static BUDGET: Cell<[u64; 2]> = const { Cell::new([0, u64::MAX]) };
 }
 
 /// The card that was opened last.
@@ -160,6 +166,14 @@ impl Card {
         locked(&self.fault).get_or_insert(what.to_owned());
     }
 
+    /// Runs `work`, whose buffers may take `bytes` together; 0: no limit.
+    pub(in crate::solver) fn within<T>(bytes: u64, work: impl FnOnce() -> T) -> T {
+        let before = BUDGET.replace([0, if bytes == 0 { u64::MAX } else { bytes }]);
+        let result = work();
+        BUDGET.set(before);
+        result
+    }
+
     /// A buffer of `values`, which kernels read and write.
     ///
     /// # Errors
@@ -185,6 +199,12 @@ impl Card {
                 self.info.adapter
             )));
         }
+        let [used, most] = BUDGET.get();
+        if used.saturating_add(size) > most {
+            let reason = format!("{name} would make it more than the {most} bytes that a solver may take on the card");
+            return Err(unavailable(reason));
+        }
+        BUDGET.set([used + size, most]);
         self.check()?;
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let descriptor = wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false };
@@ -205,9 +225,13 @@ impl Card {
 
     /// Writes `values` to the start of `buffer`, before whatever is submitted next.
     pub(in crate::solver) fn write<T: Pod>(&self, buffer: &wgpu::Buffer, values: &[T]) {
-        let bytes: &[u8] = bytemuck::cast_slice(values);
+        self.write_from(buffer, 0, values);
+    }
+
+    /// Writes `values` to `buffer` from the byte `first` on, before whatever is submitted next.
+    pub(in crate::solver) fn write_from<T: Pod>(&self, buffer: &wgpu::Buffer, first: usize, values: &[T]) {
         // Copies are of whole words; types of other sizes are not used.
-        self.queue.write_buffer(buffer, 0, bytes);
+        self.queue.write_buffer(buffer, first as u64, bytemuck::cast_slice(values));
     }
 
     /// The kernel `main` of the WGSL text that `parts` make together, compiled once for each `name`.
@@ -286,6 +310,17 @@ impl Card {
         self.queue.submit([encoder.finish()]);
     }
 
+    /// Waits for what was submitted.
+    ///
+    /// # Errors
+    /// Status `BackendFailed` if the card was lost.
+    pub(in crate::solver) fn wait(&self) -> Result<()> {
+        if let Err(error) = self.device.poll(wgpu::PollType::wait_indefinitely()) {
+            self.fail(&error.to_string());
+        }
+        self.check()
+    }
+
     /// Waits for what was submitted and reads the first values of each buffer.
     ///
     /// # Errors
@@ -314,9 +349,7 @@ impl Card {
                 }
             });
         }
-        if let Err(error) = self.device.poll(wgpu::PollType::wait_indefinitely()) {
-            self.fail(&error.to_string());
-        }
+        self.wait()?;
         if let Some(what) = locked(&failed).take() {
             self.fail(&what);
         }

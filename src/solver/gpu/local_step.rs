@@ -93,17 +93,18 @@ pub(super) fn row_unit(kernel: Kernel, size: f64) -> f64 {
     }
 }
 
-/// The buckets of all types with kernels, without constraints of stiffness 0, and the results of each page.
-fn buckets(
+/// The buckets of all types whose kernel is `wanted`, without constraints of stiffness 0, and the results of each page.
+pub(super) fn buckets(
     constraints: &ConstraintSet,
     stiffness: &[Vec<f64>],
+    wanted: impl Fn(Kernel) -> bool,
     wants: Wants,
     binding_bytes: u64,
 ) -> (Vec<Bucket>, Vec<usize>) {
     let most_results = (binding_bytes / size_of::<Four>() as u64).max(1) as usize;
     let (mut buckets, mut pages): (Vec<Bucket>, Vec<usize>) = (Vec::new(), Vec::new());
     for (index, (batch, _)) in constraints.batches().enumerate() {
-        if !matches!(batch.kernel(), Kernel::Wgsl(..)) {
+        if !wanted(batch.kernel()) {
             continue;
         }
         let mut alike: BTreeMap<(usize, usize), Vec<u32>> = BTreeMap::new();
@@ -116,8 +117,9 @@ fn buckets(
             let first_slot = slots.first().map_or(0, |slot| *slot as usize);
             let mut numbers = Vec::new();
             batch.kernel_numbers(first_slot, 1.0, &mut numbers);
-            // Results are four numbers, all else is one.
-            let widest = results.max(points.div_ceil(4)).max(numbers.len().div_ceil(4)).max(1);
+            // Results are four numbers, all else is one. The same cut whatever is wanted.
+            let rows = batch.info().rows.count(points);
+            let widest = points.max(rows).max(numbers.len().div_ceil(4)).max(1);
             for part in slots.chunks((most_results / widest).max(1)) {
                 let count = part.len() * results;
                 if pages.last().is_none_or(|used| used + count > most_results) {
@@ -133,6 +135,11 @@ fn buckets(
     (buckets, pages)
 }
 
+/// Room for so many results on each page.
+pub(super) fn pages(card: &Card, name: &str, counts: &[usize]) -> Result<Vec<(wgpu::Buffer, usize)>> {
+    counts.iter().map(|&count| Ok((card.room(name, (count * size_of::<Four>()) as u64)?, count))).collect()
+}
+
 impl LocalStep {
     /// `stiffness` is by batch and slot, `points` are what the constraints' indices refer to.
     pub(super) fn new(
@@ -143,9 +150,9 @@ impl LocalStep {
         points: &PointBuffers,
         wants: Wants,
     ) -> Result<Self> {
-        let (buckets, page_counts) = buckets(constraints, stiffness, wants, card.binding_bytes());
-        let room = |count: usize| card.room("the projections", (count * size_of::<Four>()) as u64);
-        let pages: Vec<_> = page_counts.iter().map(|&count| Ok((room(count)?, count))).collect::<Result<_>>()?;
+        let has_kernel = |kernel| matches!(kernel, Kernel::Wgsl(..));
+        let (buckets, counts) = buckets(constraints, stiffness, has_kernel, wants, card.binding_bytes());
+        let pages = pages(card, "the projections", &counts)?;
         let run = |bucket: &Bucket| {
             let batch = constraints.batch(bucket.batch);
             bucket.run(card, batch, &stiffness[bucket.batch], frame, points, &pages[bucket.page].0, wants)
@@ -157,7 +164,7 @@ impl LocalStep {
 
 impl Bucket {
     #[allow(clippy::too_many_arguments, reason = "each is another thing")]
-    fn run(
+    pub(super) fn run(
         &self,
         card: &Card,
         batch: &dyn Batch,

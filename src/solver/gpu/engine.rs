@@ -1,0 +1,535 @@
+//! Whole iterations on the card.
+//!
+//! The card keeps the points as `x₀ + u`, both in single precision, and solves `N Δu = s Aᵀ(P(A x) − A x) + …` for the change in
+//! each iteration: what is small is then computed with all the digits that single precision has. `N` is never factorised:
+//! conjugate gradients with a multigrid cycle make so many steps as were seen to suffice, without asking the processor. Many
+//! iterations are submitted at once; points and energy are read back behind them.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+
+use super::card::{Access, Card, GROUP, Run};
+use super::conjugate_gradients::ConjugateGradients;
+use super::constants;
+use super::frame::{Four, Frame, four, vector};
+use super::gather::{self, vector_bytes};
+use super::hard_step::{HardParts, HardStep};
+use super::history::{History, Iterate};
+use super::local_step::{LocalStep, PointBuffers, Wants};
+use super::sliced::Sliced;
+use crate::constraints::{ConstraintSet, Kernel};
+use crate::error::{Error, Result, Status};
+use crate::linalg::multilevel::Multilevel;
+use crate::linalg::rows::SparseRows;
+use crate::linalg::symmetric::SymmetricMatrix;
+use crate::solver::acceleration::Chooser;
+use crate::solver::history::Combination;
+
+/// Iterations between read-backs at most.
+const MOST_ITERATIONS: u32 = 25;
+
+/// Seconds between read-backs, about: half of what is promised, as the time of an iteration is an estimate.
+const SECONDS: f64 = 0.25;
+
+/// What is left of the error of a linear solve, in the norm of the matrix. The energy that is missed is the square of it.
+const LINEAR_TOLERANCE: f64 = 1e-4;
+
+/// Steps of conjugate gradients in a linear solve: at the start, at least, and at most.
+const FIRST_STEPS: u32 = 12;
+const LEAST_STEPS: u32 = 2;
+const MOST_STEPS: u32 = 80;
+
+/// Moves since the last upload beyond which points are uploaded anew, in units of the card.
+const FAR: f64 = 1.0 / 16.0;
+
+/// Accelerated iterations in a row that end as plain ones, after which acceleration has found what it can.
+const MOST_PLAIN: u32 = 3;
+
+/// What a system is made of, for the card.
+pub(in crate::solver) struct Parts<'a> {
+    pub(in crate::solver) constraints: &'a ConstraintSet,
+    /// Weight times measure, by batch and slot.
+    pub(in crate::solver) stiffness: &'a [Vec<f64>],
+    /// `N` with inertia, or with the remedies for singular systems.
+    pub(in crate::solver) matrix: &'a SymmetricMatrix,
+    /// `Q`, see `constants.rs`.
+    pub(in crate::solver) linear: SparseRows,
+    /// The components that nothing holds against translation.
+    pub(in crate::solver) free: Vec<Vec<u32>>,
+    /// Forces that follow the points: the processor computes them in each iteration.
+    pub(in crate::solver) has_moving_forces: bool,
+    pub(in crate::solver) hard: Option<HardParts<'a>>,
+}
+
+/// The state of a model on the card.
+pub(in crate::solver) struct Engine {
+    card: Arc<Card>,
+    frame: Frame,
+    points: PointBuffers,
+    /// `C` of the terms that are linear in the points.
+    constants: wgpu::Buffer,
+    /// What types without a kernel pull at each point with; none if there are none.
+    host_pulls: Option<wgpu::Buffer>,
+    /// From points to the right-hand side.
+    projecting: Vec<Run>,
+    gradients: ConjugateGradients,
+    /// From the solution to points, and to the rows of hard constraints.
+    moving: Vec<Run>,
+    hard: Option<HardStep>,
+    energies: wgpu::Buffer,
+    moves: wgpu::Buffer,
+    group_count: usize,
+    /// Steps of conjugate gradients in each linear solve.
+    steps: u32,
+    seconds_per_iteration: f64,
+    base: Vec<Four>,
+    /// The points of the last upload or read-back.
+    pub(in crate::solver) current: Vec<DVec3>,
+    /// The energy of the linear terms at the last upload.
+    constant_energy: f64,
+    /// The components that nothing holds against translation, and the means that they keep.
+    free: Vec<Vec<u32>>,
+    means: Vec<DVec3>,
+    /// True once the right-hand side belongs to the points.
+    is_projected: bool,
+    /// What accelerated iterations remember; none before the first.
+    history: Option<History>,
+    /// The energy at the points where it is known, that of the linear terms at the last upload left out.
+    energy: Option<f64>,
+    /// Iterations in a row that found no step better than the plain one.
+    plain_in_a_row: u32,
+    sums: wgpu::Buffer,
+    scale: wgpu::Buffer,
+    /// Names of types that the processor projects.
+    pub(in crate::solver) host_types: Vec<&'static str>,
+    pub(in crate::solver) gpu_seconds: f64,
+    pub(in crate::solver) transfer_seconds: f64,
+}
+
+/// What is known after a read-back.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct ReadBack {
+    /// Iterations since the one before, and evaluations.
+    pub(in crate::solver) iterations: u32,
+    pub(in crate::solver) evaluations: u32,
+    /// True where acceleration finds nothing any more: energies differ by less than single precision tells.
+    pub(in crate::solver) is_stuck: bool,
+    /// In single precision but for the sum.
+    pub(in crate::solver) energy: f64,
+    /// The largest move of a point in the last iteration, in model units.
+    pub(in crate::solver) largest_move: f64,
+}
+
+/// See the shaders.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Counts([u32; 2]);
+
+impl Engine {
+    /// Brings a model to the card. `points` are where it is.
+    pub(in crate::solver) fn new(card: Arc<Card>, parts: &Parts<'_>, points: &[DVec3]) -> Result<Self> {
+        let (n, unknowns) = (points.len(), parts.matrix.dimension());
+        let Parts { constraints, stiffness, matrix, .. } = parts;
+        let frame = Frame::of(points);
+        let buffers = PointBuffers::new(&card, n)?;
+        let room = |name: &str, count: usize| card.room(name, vector_bytes(count));
+        let (constants, sums) = (room("the constant terms", n)?, room("the right-hand side", n)?);
+        let local = LocalStep::new(&card, constraints, stiffness, &frame, &buffers, Wants::Pulls)?;
+
+        let scale: Vec<f64> = (0..unknowns).map(|i| 1.0 / matrix.diagonal(i).sqrt()).collect();
+        let near_null = scale.iter().map(|scale| 1.0 / scale).collect();
+        let hierarchy = Multilevel::new(SparseRows::scaled(matrix, &scale), near_null)?;
+        let gradients = ConjugateGradients::new(&card, hierarchy)?;
+        let scale: Vec<f32> = scale.iter().map(|scale| *scale as f32).collect();
+        let scale = card.buffer("the scale of unknowns", &scale)?;
+
+        let group_count = unknowns.div_ceil(GROUP as usize);
+        let group_bytes = (group_count * size_of::<f32>()) as u64;
+        let (energies, moves) = (card.room("the energies", group_bytes)?, card.room("the moves", group_bytes)?);
+        let counts = |a: usize, b: usize| card.uniform(&Counts([a as u32, b as u32]));
+
+        let mut projecting = local.runs;
+        let linear = Sliced::new(&card, "the constant terms", &parts.linear)?;
+        projecting.extend(linear.residual(&card, &constants, &buffers.shift, &sums)?);
+        let (uniform, read, write) = (Access::Uniform, Access::Read, Access::Write);
+        let kernel =
+            card.kernel("constants", &[include_str!("shaders/constants.wgsl")], &[uniform, read, read, write])?;
+        projecting.push(card.run_of(&kernel, &[&counts(n, 0), &constants, &buffers.shift, &sums], n));
+        let is_of_host = |(index, (batch, _)): &(usize, (&dyn crate::constraints::Batch, &[f64]))| {
+            batch.kernel() == Kernel::None && stiffness[*index].iter().any(|s| *s > 0.0)
+        };
+        let host_types: Vec<_> =
+            constraints.batches().enumerate().filter(is_of_host).map(|(_, (batch, _))| batch.info().name).collect();
+        let needs_host = parts.has_moving_forces || !host_types.is_empty();
+        let host_pulls = if needs_host { Some(room("what the processor pulls with", n)?) } else { None };
+        if let Some(pulls) = &host_pulls {
+            let kernel = card.kernel("add", &[include_str!("shaders/add.wgsl")], &[uniform, read, write])?;
+            projecting.push(card.run_of(&kernel, &[&counts(n, 0), pulls, &sums], n));
+        }
+        // The pages of results, and what else is theirs, live in the runs.
+        projecting.extend(gather::runs(&card, constraints, &LocalStep { runs: Vec::new(), ..local }, n, &sums)?);
+        let hard = match &parts.hard {
+            Some(hard) => Some(HardStep::new(&card, hard, &frame, (&buffers, n), &sums)?),
+            None => None,
+        };
+        let (mut holding, mut advancing) = (Vec::new(), Vec::new());
+        let hard = hard.map(|mut hard| {
+            (holding, advancing) = (std::mem::take(&mut hard.holding), std::mem::take(&mut hard.advancing));
+            hard
+        });
+        projecting.extend(holding);
+        let accesses = [uniform, read, read, write, write];
+        let kernel = card.kernel("right_hand_side", &[include_str!("shaders/right_hand_side.wgsl")], &accesses)?;
+        let buffers_of_run = [&counts(unknowns, n), &sums, &scale, &gradients.right, &energies];
+        projecting.push(card.run_of(&kernel, &buffers_of_run, unknowns));
+        let kernel = card.kernel("move", &[include_str!("shaders/move.wgsl")], &accesses)?;
+        let buffers_of_run = [&counts(n, 0), &gradients.solution, &scale, &buffers.shift, &moves];
+        let mut moving = vec![card.run_of(&kernel, &buffers_of_run, n)];
+        moving.extend(advancing);
+        Ok(Self {
+            frame,
+            points: buffers,
+            constants,
+            host_pulls,
+            projecting,
+            gradients,
+            moving,
+            hard,
+            energies,
+            moves,
+            group_count,
+            steps: FIRST_STEPS,
+            seconds_per_iteration: 0.0,
+            base: Vec::new(),
+            current: Vec::new(),
+            constant_energy: 0.0,
+            free: parts.free.clone(),
+            means: Vec::new(),
+            is_projected: false,
+            history: None,
+            energy: None,
+            plain_in_a_row: 0,
+            sums,
+            scale,
+            host_types,
+            gpu_seconds: 0.0,
+            transfer_seconds: 0.0,
+            card,
+        })
+    }
+}
+
+/// What the solver knows at the time of an iteration.
+#[derive(Clone, Copy)]
+pub(in crate::solver) struct Now<'a> {
+    pub(in crate::solver) constraints: &'a ConstraintSet,
+    /// Weight times measure, by batch and slot.
+    pub(in crate::solver) stiffness: &'a [Vec<f64>],
+    /// `C` at points, without the constraints, and the energy there.
+    pub(in crate::solver) constants: &'a dyn Fn(&[DVec3]) -> (Vec<DVec3>, f64),
+}
+
+impl Engine {
+    /// Begins at `points`: uploads them unless the card has them, and the terms that are linear in them.
+    pub(in crate::solver) fn begin(&mut self, now: Now<'_>, points: &[DVec3]) {
+        let started = Instant::now();
+        if self.current != points {
+            self.current.clear();
+            self.current.extend_from_slice(points);
+            self.upload_points();
+        }
+        self.means = self.free.iter().map(|points| mean(points, &self.current)).collect();
+        self.upload_constants(now);
+        self.transfer_seconds += started.elapsed().as_secs_f64();
+    }
+
+    /// True once it is known how many steps of conjugate gradients suffice.
+    pub(in crate::solver) fn is_warm(&self) -> bool {
+        self.seconds_per_iteration > 0.0
+    }
+
+    /// True if the processor has a share in each iteration.
+    pub(in crate::solver) fn has_host(&self) -> bool {
+        self.host_pulls.is_some()
+    }
+
+    /// Iterations that one call of [`Self::iterate`] should make, so that the next read-back is not too late.
+    pub(in crate::solver) fn suggested_count(&self) -> u32 {
+        if self.has_host() || self.seconds_per_iteration == 0.0 {
+            return 1;
+        }
+        ((SECONDS / self.seconds_per_iteration) as u32).clamp(1, MOST_ITERATIONS)
+    }
+
+    /// Has the following iterations accelerated, with so many pairs remembered; they begin with nothing to remember.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(in crate::solver) fn remember(&mut self, capacity: usize) -> Result<()> {
+        if self.history.as_ref().is_none_or(|history| history.capacity() != capacity) {
+            let iterate = Iterate {
+                shift: &self.points.shift,
+                sums: &self.sums,
+                solution: &self.gradients.solution,
+                scale: &self.scale,
+                moves: &self.moves,
+            };
+            self.history = Some(History::new(&self.card, capacity, self.current.len(), iterate)?);
+        }
+        self.forget();
+        Ok(())
+    }
+
+    fn forget(&mut self) {
+        self.history.iter_mut().for_each(History::forget);
+        self.plain_in_a_row = 0;
+    }
+
+    /// So many iterations, one where the processor has a share; accelerated where there is a `chooser`. [`Self::current`] then
+    /// has the points.
+    ///
+    /// # Errors
+    /// Status `BackendFailed`; [`Self::current`] is as it was.
+    pub(in crate::solver) fn iterate(
+        &mut self,
+        count: u32,
+        now: Now<'_>,
+        chooser: Option<&mut Chooser>,
+    ) -> Result<ReadBack> {
+        if self.has_host() {
+            let started = Instant::now();
+            // Forces that follow the points have other constants.
+            self.upload_constants(now);
+            self.transfer_seconds += started.elapsed().as_secs_f64();
+        }
+        let started = Instant::now();
+        if !self.is_projected {
+            self.project(now);
+        }
+        let evaluations = match chooser {
+            Some(chooser) => self.accelerated_iterations(count, chooser)?,
+            None => {
+                self.plain_iterations(count);
+                count
+            }
+        };
+        self.card.wait()?;
+        let seconds = started.elapsed().as_secs_f64();
+        self.gpu_seconds += seconds;
+        self.seconds_per_iteration = seconds / f64::from(count.max(1));
+        let started = Instant::now();
+        let mut found = self.read_back(count)?;
+        found.evaluations = evaluations;
+        if self.base.iter().zip(&self.current).any(|(base, point)| self.has_gone_far(*base, *point)) {
+            self.upload_points();
+            self.upload_constants(now);
+            self.forget();
+        }
+        self.transfer_seconds += started.elapsed().as_secs_f64();
+        Ok(found)
+    }
+
+    fn plain_iterations(&mut self, count: u32) {
+        for _ in 0..count {
+            self.gradients.submit(&self.card, self.steps);
+            self.card.submit(&self.moving);
+            if !self.has_host() {
+                self.card.submit(&self.projecting);
+            }
+        }
+        self.is_projected = !self.has_host();
+        self.energy = None;
+    }
+
+    /// Returns the number of evaluations.
+    fn accelerated_iterations(&mut self, count: u32, chooser: &mut Chooser) -> Result<u32> {
+        let mut energy = match self.energy {
+            Some(energy) => energy,
+            None => self.read_energy()?,
+        };
+        let mut evaluations = 0;
+        for _ in 0..count {
+            let (found, tried) = self.accelerated_iteration(energy, chooser)?;
+            energy = found;
+            evaluations += tried;
+        }
+        self.energy = Some(energy);
+        Ok(evaluations)
+    }
+
+    /// From points of `energy` to those of the energy that is returned, with the number of evaluations.
+    fn accelerated_iteration(&mut self, energy: f64, chooser: &mut Chooser) -> Result<(f64, u32)> {
+        let Some(mut history) = self.history.take() else { return Err(super::internal("there is no history")) };
+        self.gradients.submit(&self.card, self.steps);
+        history.push(&self.card);
+        let read: Vec<Vec<f32>> = self.card.read(&[history.shares(), (&self.gradients.progress, 8)])?;
+        history.take(&read[0]);
+        self.steps = steps_for(self.steps, &read[1]);
+        let mut evaluations = 0;
+        let mut accepted = None;
+        if chooser.choose(&mut history.products, energy) {
+            history.direct(&self.card, &chooser.combination);
+            while let Some(length) = chooser.next_length() {
+                evaluations += 1;
+                let found = self.try_length(&history, length)?;
+                if chooser.accepts(found) {
+                    accepted = Some(found);
+                    break;
+                }
+            }
+        }
+        self.plain_in_a_row = if accepted.is_some() { 0 } else { self.plain_in_a_row + 1 };
+        let found = match accepted {
+            Some(found) => found,
+            None => {
+                evaluations += 1;
+                history.direct(&self.card, &Combination { plain: 1.0, ..Combination::default() });
+                self.try_length(&history, 1.0)?
+            }
+        };
+        self.history = Some(history);
+        Ok((found, evaluations))
+    }
+
+    /// The energy so far along the direction from the last iterate, where the points then are.
+    fn try_length(&self, history: &History, length: f64) -> Result<f64> {
+        history.set_length(&self.card, length);
+        self.card.submit([&history.trial].into_iter().chain(&self.projecting));
+        self.read_energy()
+    }
+
+    fn read_energy(&self) -> Result<f64> {
+        let read: Vec<Vec<f32>> = self.card.read(&[(&self.energies, self.group_count)])?;
+        Ok(self.frame.size * self.frame.size * sum(&read[0]))
+    }
+
+    /// From points to the right-hand side; where the processor has a share, from [`Self::current`].
+    fn project(&mut self, now: Now<'_>) {
+        if let Some(buffer) = &self.host_pulls {
+            let mut pulls = vec![DVec3::ZERO; self.current.len()];
+            let of_host = |kernel| kernel == Kernel::None;
+            constants::add_pulls(now.constraints, now.stiffness, &self.current, of_host, &mut pulls);
+            let own: Vec<Four> = pulls.iter().map(|pull| four(*pull / self.frame.size)).collect();
+            self.card.write(buffer, &own);
+        }
+        self.card.submit(&self.projecting);
+        self.is_projected = true;
+    }
+
+    fn upload_points(&mut self) {
+        self.base = self.points.upload(&self.card, &self.frame, &self.current);
+        if let Some(hard) = &self.hard {
+            hard.upload_base(&self.card, &self.base);
+        }
+    }
+
+    /// Begins with these rows of the hard constraints, see [`HardStep::upload`]; after [`Self::begin`].
+    pub(in crate::solver) fn begin_rows(&mut self, rows: &[DVec3], reaches: &[f64]) {
+        if let Some(hard) = &self.hard {
+            hard.upload(&self.card, &self.frame, rows, reaches);
+        }
+    }
+
+    /// The rows of the hard constraints after the last iteration.
+    ///
+    /// # Errors
+    /// Status `BackendFailed`.
+    pub(in crate::solver) fn rows(&self) -> Result<Vec<DVec3>> {
+        self.hard.as_ref().map_or(Ok(Vec::new()), |hard| hard.read(&self.card, &self.frame))
+    }
+
+    fn has_gone_far(&self, base: Four, point: DVec3) -> bool {
+        let own = (point - self.frame.middle) / self.frame.size;
+        (own - vector(base)).abs().max_element() > FAR
+    }
+
+    /// Uploads `C`, which is about the points of the last upload.
+    fn upload_constants(&mut self, now: Now<'_>) {
+        let origin: Vec<DVec3> = self.base.iter().map(|base| self.frame.joined(*base, [0.0; 4])).collect();
+        let (mut pulls, mut energy) = (now.constants)(&origin);
+        let is_constant = |kernel| kernel == Kernel::Constant;
+        energy += constants::add_pulls(now.constraints, now.stiffness, &origin, is_constant, &mut pulls);
+        let own: Vec<Four> = pulls.iter().map(|pull| four(*pull / self.frame.size)).collect();
+        self.card.write(&self.constants, &own);
+        self.constant_energy = energy;
+        (self.is_projected, self.energy) = (false, None);
+    }
+
+    fn read_back(&mut self, iterations: u32) -> Result<ReadBack> {
+        let (n, groups) = (self.current.len(), self.group_count);
+        let buffers = [
+            (&self.points.shift, 4 * n),
+            (&self.energies, groups),
+            (&self.moves, n.div_ceil(GROUP as usize)),
+            (&self.gradients.progress, 8),
+        ];
+        let read: Vec<Vec<f32>> = self.card.read(&buffers)?;
+        let [shift, energies, moves, progress] = &read[..] else {
+            return Err(super::internal("a buffer was not read"));
+        };
+        let shift: &[Four] = bytemuck::cast_slice(shift);
+        let moved = shift.iter().zip(&self.base).map(|(shift, base)| self.frame.joined(*base, *shift));
+        let mut new: Vec<DVec3> = moved.collect();
+        if !new.iter().all(|point| point.is_finite()) {
+            let reason = "the numbers of this model leave the range of single precision";
+            return Err(Error::new(Status::BackendFailed, reason));
+        }
+        // What nothing holds against translation drifts with the point that is held while solving.
+        for (points, wanted) in self.free.iter().zip(&self.means) {
+            let drift = *wanted - mean(points, &new);
+            points.iter().for_each(|point| new[*point as usize] += drift);
+        }
+        self.current = new;
+        self.steps = steps_for(self.steps, progress);
+        let size = self.frame.size;
+        let energy = size * size * sum(energies);
+        let largest = moves.iter().copied().fold(0.0, f32::max);
+        Ok(ReadBack {
+            iterations,
+            evaluations: iterations,
+            is_stuck: self.plain_in_a_row >= MOST_PLAIN,
+            energy: self.constant_energy + energy,
+            largest_move: size * f64::from(largest).sqrt(),
+        })
+    }
+}
+
+fn sum(energies: &[f32]) -> f64 {
+    energies.iter().map(|energy| f64::from(*energy)).sum()
+}
+
+fn mean(points: &[u32], all: &[DVec3]) -> DVec3 {
+    let first = all[points[0] as usize];
+    first + points.iter().map(|point| all[*point as usize] - first).sum::<DVec3>() / points.len() as f64
+}
+
+/// How many steps of conjugate gradients the next solves need, from how far `steps` came: `r·z` of its start and end.
+fn steps_for(steps: u32, progress: &[f32]) -> u32 {
+    let left = (0..3).filter(|&lane| progress[lane] > 0.0).map(|lane| f64::from(progress[4 + lane] / progress[lane]));
+    let left = left.fold(0.0, f64::max);
+    if !(left > 0.0) {
+        return steps;
+    }
+    // Each step takes its part of the error.
+    let per_step = left.sqrt().ln() / f64::from(steps.max(1));
+    let wanted = if per_step < 0.0 { (LINEAR_TOLERANCE.ln() / per_step).ceil() } else { f64::from(MOST_STEPS) };
+    (wanted as u32).clamp(LEAST_STEPS, MOST_STEPS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_steps_are_made_as_the_tolerance_takes() {
+        // Ten steps that leave a hundredth of the error: twenty leave a ten-thousandth.
+        let progress = |left: f32| [1.0, 2.0, 0.0, 0.0, left, 2.0 * left, 5.0, 0.0];
+        assert_eq!(steps_for(10, &progress(1e-4)), 20);
+        assert_eq!(steps_for(10, &progress(1e-40)), LEAST_STEPS);
+        assert_eq!(steps_for(10, &progress(2.0)), MOST_STEPS);
+        assert_eq!(steps_for(10, &[0.0; 8]), 10);
+    }
+}

@@ -1,0 +1,29 @@
+// direction ← keep direction + a u + b v, of two vectors behind each other.
+
+struct Factors {
+    count: u32,
+    // Where `u` and `v` begin in `vectors`.
+    first: u32,
+    second: u32,
+    keep: f32,
+    a: f32,
+    b: f32,
+}
+
+@group(0) @binding(0) var<uniform> factors: Factors;
+@group(0) @binding(1) var<storage, read> vectors: array<vec4f>;
+@group(0) @binding(2) var<storage, read_write> direction: array<vec4f>;
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let i = (group.y * groups.x + group.x) * 64u + lane;
+    if i < factors.count {
+        let new = factors.a * vectors[factors.first + i] + factors.b * vectors[factors.second + i];
+        // What was there before may be anything where it is not kept.
+        direction[i] = select(new, factors.keep * direction[i] + new, factors.keep != 0.0);
+    }
+}
