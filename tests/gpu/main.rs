@@ -1,5 +1,6 @@
 //! The graphics card against the processor. Runs on any adapter, the software one included.
 
+mod fits;
 mod kernels;
 
 use shapeop::solver::{BackendOptions, backend_info};
