@@ -10,7 +10,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{self, Mask, V4};
 use crate::linalg::simd::Isa;
 use crate::linalg::small::{scatter, symmetric_eigen};
@@ -81,6 +81,8 @@ impl Constraint for Circle {
 
     // The points of an arc, say, have another mean than before they were moved radially.
     const TARGETS_ARE_CENTRED: bool = false;
+
+    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/circle.wgsl"), RowUnit::Length);
 
     fn at_rest(_x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self

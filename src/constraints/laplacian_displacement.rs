@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::laplacian::{uniform_laplacian, uniform_row};
-use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Kernel, Projection, Rows, Scalars, Stencil, TypeInfo};
 
 /// One LaplacianDisplacement constraint: the Laplacian at creation.
 #[derive(Clone, Debug)]
@@ -27,6 +27,8 @@ impl Constraint for LaplacianDisplacement {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Constant;
 
     fn at_rest(x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self(uniform_laplacian(x))

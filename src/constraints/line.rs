@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Kernel, Projection, RowUnit, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::small::{scatter, symmetric_eigen};
 
 /// One Line constraint; it has no rest state.
@@ -32,6 +32,8 @@ impl Constraint for Line {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/line.wgsl"), RowUnit::Length);
 
     fn at_rest(_x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self

@@ -8,7 +8,10 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Four, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo, check_direction, unit_vector};
+use super::{
+    Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalar, Scalars, Stencil, TypeInfo, check_direction,
+    unit_vector,
+};
 use crate::error::Result;
 use crate::linalg::lanes::{Mask, V4};
 use crate::linalg::simd::Isa;
@@ -39,6 +42,12 @@ impl Constraint for Orientation {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/orientation.wgsl"), RowUnit::Length);
+
+    fn kernel_numbers(&self, _scalars: &[f64], _size: f64, numbers: &mut Vec<f64>) {
+        numbers.extend(self.normal.to_array());
+    }
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         let normal = least_eigenvector(scatter(x.iter()));

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{self, Mask, V4};
 use crate::linalg::simd::Isa;
 use crate::linalg::small::{least_eigenvector, scatter};
@@ -35,6 +35,8 @@ impl Constraint for Plane {
     };
 
     const ALIAS: Option<&'static str> = Some("PlanarPolygon");
+
+    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/plane.wgsl"), RowUnit::Length);
 
     fn at_rest(_x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self

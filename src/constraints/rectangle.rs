@@ -14,7 +14,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{self, F4, Mask, V4};
 use crate::linalg::simd::Isa;
 use crate::linalg::small::{scatter, symmetric_eigen};
@@ -58,6 +58,8 @@ impl Constraint for Rectangle {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/rectangle.wgsl"), RowUnit::Length);
 
     fn at_rest(_x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self

@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{Mask, V4};
 use crate::linalg::simd::Isa;
 use crate::linalg::small::any_orthogonal;
@@ -103,6 +103,18 @@ impl Constraint for RegularPolygon {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(
+        concat!(
+            include_str!("../solver/gpu/shaders/polygon.wgsl"),
+            include_str!("../solver/gpu/shaders/regular_polygon.wgsl")
+        ),
+        RowUnit::Length,
+    );
+
+    fn kernel_numbers(&self, _scalars: &[f64], _size: f64, numbers: &mut Vec<f64>) {
+        numbers.extend(self.rest_normal.to_array());
+    }
 
     fn at_rest(x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         let (sin, cos) = (TAU / x.len() as f64).sin_cos();

@@ -103,6 +103,31 @@ pub fn project(scalars: &[f64], x: Stencil<'_>, scale: Scale, mut visit: impl Fn
     }
 }
 
+/// Appends what `shape_fit.wgsl` reads: the circumradius of the regular polygon (`known`: the number of points, and that, as
+/// [`polygon_radius`] gave it) and the number of templates; then of each template its size, the root of the sum of its vertices' squared distances
+/// from their mean, and its vertices about the mean, over the size. Sizes are in units of `unit` where the scale is fixed, else 1;
+/// a template that is a point has size and vertices 0.
+pub fn kernel_numbers(scalars: &[f64], known: (usize, f64), scale: Scale, unit: f64, numbers: &mut Vec<f64>) {
+    let (k, polygon_radius) = known;
+    let in_units = |length: f64| match scale {
+        Scale::Fixed => length / unit,
+        Scale::Free if length > 0.0 => 1.0,
+        Scale::Free => 0.0,
+    };
+    let shape_count = scalars.len() / (3 * k);
+    numbers.extend([in_units(polygon_radius), shape_count as f64]);
+    for shape in 0..shape_count {
+        let mean = mean(scalars, k, shape);
+        let own = |j: usize| vertex(scalars, k, shape, j) - mean;
+        // Relative, so that squares of tiny and huge coordinates stay in range.
+        let greatest = (0..k).map(|j| own(j).abs().max_element()).fold(0.0, f64::max);
+        let norm = (0..k).map(|j| (own(j) / greatest).length_squared()).sum::<f64>().sqrt();
+        let is_point = !(greatest > 0.0);
+        numbers.push(if is_point { 0.0 } else { in_units(greatest * norm) });
+        numbers.extend((0..k).flat_map(|j| if is_point { [0.0; 3] } else { (own(j) / greatest / norm).to_array() }));
+    }
+}
+
 /// The largest distance of a point from the nearest configuration.
 pub fn violation(scalars: &[f64], x: Stencil<'_>, scale: Scale) -> f64 {
     let mut worst = 0.0_f64;

@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::shape_fit::{self, Scale};
-use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{Mask, V4};
 use crate::linalg::simd::Isa;
 
@@ -35,6 +35,20 @@ impl Constraint for Similarity {
         energy_scale_power: 2,
         edited_as: Some("Rigid"),
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(
+        concat!(
+            include_str!("../solver/gpu/shaders/polygon.wgsl"),
+            include_str!("../solver/gpu/shaders/shape_fit.wgsl"),
+            include_str!("../solver/gpu/shaders/similarity.wgsl")
+        ),
+        RowUnit::Length,
+    );
+
+    fn kernel_numbers(&self, scalars: &[f64], size: f64, numbers: &mut Vec<f64>) {
+        let known = (self.point_count, self.polygon_radius);
+        shape_fit::kernel_numbers(scalars, known, Scale::Free, size, numbers);
+    }
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         scalars.extend(x.iter().flat_map(|point| point.to_array()));

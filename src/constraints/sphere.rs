@@ -9,7 +9,7 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Kernel, Projection, RowUnit, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::small::{scatter, symmetric_eigen};
 
 /// Points whose scatter has a least eigenvalue at or below this multiple of the greatest are in a plane within round-off: the
@@ -52,6 +52,8 @@ impl Constraint for Sphere {
 
     // The points of an arc, say, have another mean than before they were moved radially.
     const TARGETS_ARE_CENTRED: bool = false;
+
+    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/sphere.wgsl"), RowUnit::Length);
 
     fn at_rest(_x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self

@@ -1,11 +1,13 @@
 //! The graphics card against the processor. Runs on any adapter, the software one included.
 
 mod faults;
+mod fits;
 mod kernels;
 #[path = "../../benches/models.rs"]
 #[allow(dead_code, reason = "each program takes what it needs")]
 mod models;
 mod problems;
+mod strains;
 
 use shapeop::solver::{BackendOptions, backend_info};
 

@@ -1,0 +1,76 @@
+// The regular polygon nearest to points in order, in closed form: see constraints/regular_polygon.rs.
+
+const QUARTER_TURN = 1.57079632679;
+
+// `‖p × q‖` up to which, relative to `p² + q²`, the points span no plane: its direction is round-off.
+const COLLINEAR = 1e-6;
+
+// Lengths below which a normal at rest says nothing once what it shares with the points' line is taken off.
+const ALONG = 1e-3;
+
+// The cosine and sine of `j` of `k` parts of a turn. Those of the language promise few digits. By Taylor's series, within 45° of
+// one of the axes.
+fn corner_turn(j: u32, k: u32) -> vec2f {
+    let quarter = (8u * j + k) / (2u * k);
+    let x = f32(i32(4u * j) - i32(quarter * k)) / f32(k) * QUARTER_TURN;
+    let s = x * x;
+    let cosine = 1.0 - s / 2.0 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0)));
+    let sine = x * (1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0))));
+    switch quarter & 3u {
+        case 0u: { return vec2f(cosine, sine); }
+        case 1u: { return vec2f(-sine, cosine); }
+        case 2u: { return vec2f(-cosine, -sine); }
+        default: { return vec2f(sine, -cosine); }
+    }
+}
+
+// The axes of the nearest regular polygon: corner `j` is in the direction `cos a + sin b`, and `‖a‖ = ‖b‖` is `k` times the radius.
+struct Polygon {
+    a: vec3f,
+    b: vec3f,
+    normal: vec3f,
+}
+
+// Where the points span no plane, the one of the normal nearest to `rest_normal` is taken.
+fn nearest_polygon(i: u32, mean: vec3f, rest_normal: vec3f) -> Polygon {
+    var p = vec3f(0.0);
+    var q = vec3f(0.0);
+    for (var j = 0u; j < batch.points; j++) {
+        let turn = corner_turn(j, batch.points);
+        let x = at(i, j) - mean;
+        p += turn.x * x;
+        q += turn.y * x;
+    }
+    let squared = dot(p, p) + dot(q, q);
+    if !(squared > COINCIDENT_SQUARED) {
+        return Polygon(vec3f(0.0), vec3f(0.0), vec3f(0.0, 0.0, 1.0));
+    }
+    let size = sqrt(squared);
+    p /= size;
+    q /= size;
+    var normal = cross(p, q);
+    if length(normal) > COLLINEAR {
+        normal = normalize(normal);
+    } else {
+        let along = normalize(select(q, p, dot(p, p) > dot(q, q)));
+        let rest = rest_normal - dot(rest_normal, along) * along;
+        if length(rest) > ALONG {
+            normal = normalize(rest);
+        } else {
+            normal = any_orthogonal(along);
+        }
+    }
+    var a = p + cross(q, normal);
+    // Of thin shapes the normal is not quite orthogonal to `p`, and the polygon must be regular all the same.
+    a -= dot(a, normal) * normal;
+    return Polygon(size * a, size * cross(normal, a), normal);
+}
+
+// Puts the residuals of the corners `factor (cos a + sin b)`.
+fn put_polygon(i: u32, mean: vec3f, polygon: Polygon, factor: f32) {
+    for (var j = 0u; j < batch.points; j++) {
+        let turn = corner_turn(j, batch.points);
+        let corner = factor * (turn.x * polygon.a + turn.y * polygon.b);
+        put_centred(i, j, corner - (at(i, j) - mean), vec3f(0.0));
+    }
+}

@@ -1,0 +1,112 @@
+// The nearest copy of a template shape, in any cyclic or mirrored order of its vertices. See constraints/shape_fit.rs.
+//
+// Numbers: the circumradius of the template if it is a regular polygon, else 0; the number of templates; of each template its size, the
+// root of the sum of its vertices' squared distances from their mean, and the vertices about their mean, over the size. Sizes are 1 where
+// the scale is free.
+
+// How far a bound on a trace may be exceeded by round-off, relative to the bound.
+const BOUND_SLACK = 1e-5;
+
+struct Candidate {
+    shape: u32,
+    shift: u32,
+    is_mirrored: bool,
+    rotation: Rotation,
+}
+
+fn shape_number(shape: u32) -> u32 {
+    return 2u + shape * (3u * batch.points + 1u);
+}
+
+// Vertex of template `shape` to which point `j` is matched.
+fn vertex(i: u32, shape: u32, shift: u32, is_mirrored: bool, j: u32) -> vec3f {
+    let index = select(shift + j, shift + batch.points - j, is_mirrored) % batch.points;
+    let n = shape_number(shape) + 1u + 3u * index;
+    return vec3f(number(i, n), number(i, n + 1u), number(i, n + 2u));
+}
+
+// `Σ x qᵀ` of the points along the axes `u` and the vertices along the axes `v`.
+fn covariance(i: u32, mean: vec3f, u: mat3x3f, v: mat3x3f, shape: u32, shift: u32, is_mirrored: bool) -> mat3x3f {
+    var sum = mat3x3f();
+    for (var j = 0u; j < batch.points; j++) {
+        sum += outer((at(i, j) - mean) * u, vertex(i, shape, shift, is_mirrored, j) * v);
+    }
+    return sum;
+}
+
+// A bound on the trace that the best rotation reaches: see `trace_bound` in shape_fit.rs.
+fn trace_bound(h: mat3x3f) -> f32 {
+    let a = cross(h[0], h[1]);
+    let b = cross(h[1], h[2]);
+    let c = cross(h[2], h[0]);
+    let cofactors = sqrt(dot(a, a) + dot(b, b) + dot(c, c));
+    let squared = dot(h[0], h[0]) + dot(h[1], h[1]) + dot(h[2], h[2]);
+    return sqrt(squared + 2.0 * sqrt(3.0) * cofactors) * (1.0 + BOUND_SLACK);
+}
+
+// By how much the squared distance from a template of `size` is less than that from a point, up to a factor and a power; it grows with the trace.
+fn merit(trace: f32, size: f32, is_scaled: bool) -> f32 {
+    return select(size * (2.0 * trace - size), trace, is_scaled);
+}
+
+fn best_candidate(i: u32, mean: vec3f, is_scaled: bool) -> Candidate {
+    var best = Candidate(0u, 0u, false, Rotation(IDENTITY, IDENTITY, 0.0));
+    var best_merit = 0.0;
+    var is_first = true;
+    let shape_count = u32(number(i, 1u));
+    for (var shape = 0u; shape < shape_count; shape++) {
+        let size = number(i, shape_number(shape));
+        for (var order = 0u; order < 2u * batch.points; order++) {
+            let is_mirrored = order >= batch.points;
+            let shift = select(order, order - batch.points, is_mirrored);
+            let h = covariance(i, mean, IDENTITY, IDENTITY, shape, shift, is_mirrored);
+            // Most orders are far worse than the best so far: no rotation needs to be fitted to know.
+            if !is_first && merit(trace_bound(h), size, is_scaled) < best_merit {
+                continue;
+            }
+            let rotation = nearest_rotation(h);
+            let own_merit = merit(rotation.trace, size, is_scaled);
+            if is_first || own_merit > best_merit {
+                best = Candidate(shape, shift, is_mirrored, rotation);
+                best_merit = own_merit;
+                is_first = false;
+            }
+        }
+    }
+    return best;
+}
+
+fn fit(i: u32, is_scaled: bool) {
+    let mean = centre(i);
+    let radius = number(i, 0u);
+    if radius > 0.0 {
+        fit_polygon(i, mean, radius, is_scaled);
+        return;
+    }
+    let best = best_candidate(i, mean, is_scaled);
+    // Of thin shapes the covariance in single precision does not say how far to turn about their length; along the axes found it does.
+    let own = best.rotation;
+    let left = covariance(i, mean, own.u, own.v, best.shape, best.shift, best.is_mirrored);
+    let rest = nearest_rotation(left);
+    let u = own.u * rest.u;
+    let v = own.v * rest.v;
+    let factor = select(number(i, shape_number(best.shape)), rest.trace, is_scaled);
+    for (var j = 0u; j < batch.points; j++) {
+        let target_place = factor * (u * (vertex(i, best.shape, best.shift, best.is_mirrored, j) * v));
+        put_centred(i, j, target_place - (at(i, j) - mean), vec3f(0.0));
+    }
+}
+
+// All orders of a regular polygon are turns of each other, so the order of the points will do.
+fn fit_polygon(i: u32, mean: vec3f, radius: f32, is_scaled: bool) {
+    var polygon = nearest_polygon(i, mean, vec3f(0.0));
+    if is_scaled {
+        put_polygon(i, mean, polygon, 1.0 / f32(batch.points));
+        return;
+    }
+    // Points of which no direction is better than another are given any.
+    let along = select(any_orthogonal(polygon.normal), polygon.a, dot(polygon.a, polygon.a) > COINCIDENT_SQUARED);
+    let a = normalize(along);
+    polygon = Polygon(a, cross(polygon.normal, a), polygon.normal);
+    put_polygon(i, mean, polygon, radius);
+}
