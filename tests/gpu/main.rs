@@ -1,6 +1,7 @@
 //! The graphics card against the processor. Runs on any adapter, the software one included.
 
 mod kernels;
+mod strains;
 
 use shapeop::solver::{BackendOptions, backend_info};
 
