@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{Constraint, Four, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalar, Scalars, Stencil, TypeInfo};
 use crate::error::{Error, Result, Status};
 use crate::linalg::lanes::{F4, Mask, V4};
 use crate::linalg::simd::Isa;
@@ -116,6 +116,15 @@ impl Constraint for Angle {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(
+        concat!(include_str!("../solver/gpu/shaders/corner.wgsl"), include_str!("../solver/gpu/shaders/angle.wgsl")),
+        RowUnit::Length,
+    );
+
+    fn kernel_numbers(&self, _scalars: &[f64], _size: f64, numbers: &mut Vec<f64>) {
+        numbers.extend([self.min, self.max].as_flattened());
+    }
 
     // The published Grasshopper client's help calls it so.
     const ALIAS: Option<&'static str> = Some("AngleConstraint");

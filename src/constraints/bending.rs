@@ -12,7 +12,7 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
+use super::{Constraint, Four, Kernel, Projection, RANGE, RowUnit, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
 use crate::linalg::lanes::{Mask, V4};
 use crate::linalg::simd::Isa;
@@ -70,6 +70,12 @@ impl Constraint for Bending {
         energy_scale_power: 0,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/bending.wgsl"), RowUnit::Length);
+
+    fn kernel_numbers(&self, scalars: &[f64], size: f64, numbers: &mut Vec<f64>) {
+        numbers.extend([scalars[0], scalars[1], self.rest_norm / size, self.flat_norm / size]);
+    }
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         scalars.extend([1.0, 1.0]);

@@ -21,7 +21,7 @@
 use glam::DVec3;
 
 use super::angle::{Angle, angle_between, turned_four};
-use super::{Constraint, Four, Projection, Stencil, TypeInfo};
+use super::{Constraint, Four, Kernel, Projection, RowUnit, Stencil, TypeInfo};
 use crate::error::Result;
 use crate::linalg::lanes::{Mask, V4};
 use crate::linalg::simd::Isa;
@@ -86,6 +86,19 @@ impl Constraint for BoundedAngle {
         projection: Projection::Feasible,
         ..Angle::INFO
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(
+        concat!(
+            include_str!("../solver/gpu/shaders/corner.wgsl"),
+            include_str!("../solver/gpu/shaders/bounded_angle.wgsl")
+        ),
+        RowUnit::Length,
+    );
+
+    fn kernel_numbers(&self, scalars: &[f64], size: f64, numbers: &mut Vec<f64>) {
+        self.bounds.kernel_numbers(scalars, size, numbers);
+        numbers.extend(self.rest_normal.to_array());
+    }
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         let [apex, first, second] = x.array();

@@ -25,7 +25,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::DVec3;
 
-use super::{Constraint, Four, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo, check_not_negative};
+use super::{
+    Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalar, Scalars, Stencil, TypeInfo, check_not_negative,
+};
 use crate::error::Result;
 use crate::linalg::lanes::{self, F4, Mask, V4};
 use crate::linalg::simd::Isa;
@@ -118,6 +120,18 @@ impl Constraint for DiagonalDistance {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(
+        concat!(
+            include_str!("../solver/gpu/shaders/strain.wgsl"),
+            include_str!("../solver/gpu/shaders/diagonal_distance.wgsl")
+        ),
+        RowUnit::Length,
+    );
+
+    fn kernel_numbers(&self, scalars: &[f64], size: f64, numbers: &mut Vec<f64>) {
+        numbers.push(scalars[0] / size);
+    }
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         scalars.push(distance(diagonals(x)));

@@ -9,7 +9,7 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Four, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo, check_range};
+use super::{Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalar, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
 use crate::linalg::lanes::{Mask, V4};
 use crate::linalg::simd::Isa;
@@ -38,6 +38,13 @@ impl Constraint for EdgeLength {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/edge_length.wgsl"), RowUnit::Length);
+
+    fn kernel_numbers(&self, scalars: &[f64], size: f64, numbers: &mut Vec<f64>) {
+        numbers.extend([scalars[0] / size, scalars[1] / size]);
+        numbers.extend(self.rest_direction.to_array());
+    }
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         let [start, end] = x.array();

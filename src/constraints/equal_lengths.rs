@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Four, Projection, Rows, Scalars, Stencil, TypeInfo};
+use super::{Constraint, Four, Kernel, Projection, RowUnit, Rows, Scalars, Stencil, TypeInfo};
 use crate::linalg::lanes::{Mask, V4};
 use crate::linalg::simd::Isa;
 
@@ -38,6 +38,8 @@ impl Constraint for EqualLengths {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/equal_lengths.wgsl"), RowUnit::Length);
 
     fn at_rest(_x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self

@@ -13,7 +13,7 @@ use glam::DVec3;
 use super::deformation::{
     self, Deformation, RestShape, move_product_into, move_product_into_four, orientation, recompose, strain_violation,
 };
-use super::{Constraint, Four, Projection, RANGE, Rows, Scalars, Stencil, TypeInfo, check_range};
+use super::{Constraint, Four, Kernel, Projection, RANGE, RowUnit, Rows, Scalars, Stencil, TypeInfo, check_range};
 use crate::error::Result;
 use crate::linalg::lanes::{Mask, Svd4, V4};
 use crate::linalg::simd::Isa;
@@ -36,6 +36,15 @@ impl Constraint for Volume {
         energy_scale_power: 3,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(
+        concat!(include_str!("../solver/gpu/shaders/strain.wgsl"), include_str!("../solver/gpu/shaders/volume.wgsl")),
+        RowUnit::Ratio,
+    );
+
+    fn kernel_numbers(&self, scalars: &[f64], _size: f64, numbers: &mut Vec<f64>) {
+        numbers.extend_from_slice(scalars);
+    }
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         scalars.extend([1.0, 1.0]);

@@ -187,7 +187,7 @@ impl Bucket {
             own.clear();
             batch.kernel_numbers(slot as usize, frame.size, &mut own);
             numbers.resize(own.len() * count, 0.0);
-            own.iter().enumerate().for_each(|(n, number)| numbers[n * count + i] = *number as f32);
+            own.iter().enumerate().for_each(|(n, number)| numbers[n * count + i] = single(*number));
         }
         let unit = row_unit(batch.kernel(), frame.size);
         let of_slot = |slot: &u32| (stiffness[*slot as usize] / (unit * unit)) as f32;
@@ -208,6 +208,11 @@ impl Bucket {
         let buffers = [&uniform, &points.base, &points.shift, &indices, &numbers, &stiffness, page];
         Ok(card.run_of(&kernel, &buffers, count))
     }
+}
+
+/// The nearest finite number of single precision: bounds that mean none can be as large as they like.
+fn single(number: f64) -> f32 {
+    number.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }
 
 /// What is nearest to `A x` of every constraint, as the card finds it; the means of centred ones taken off. By type, slot and row.
