@@ -23,6 +23,10 @@ const MEASURED: u32 = 2;
 /// Read-backs without a lower energy or a smaller move after which single precision has given what it has.
 const IDLE_READ_BACKS: u32 = 2;
 
+/// What energies may err by, relative to themselves, and the part of a move that a smaller one is at most.
+const ENERGY_NOISE: f64 = 1e-6;
+const FALLEN: f64 = 0.7;
+
 /// A move, relative to the bounding-box diagonal, below which single precision tells nothing.
 const LEAST_MOVE: f64 = 1e-9;
 
@@ -367,9 +371,11 @@ impl Default for Rounds {
 }
 
 impl Rounds {
-    /// True if neither energy nor moves have fallen for some read-backs.
+    /// True if neither energy nor moves have fallen, by more than single precision may err, for some read-backs.
     fn are_idle(&mut self, report: &Report) -> bool {
-        let has_fallen = report.energy_after < self.least_energy || report.largest_move < self.least_move;
+        let noise = ENERGY_NOISE * self.least_energy.abs();
+        let has_fallen =
+            !(report.energy_after >= self.least_energy - noise) || report.largest_move < FALLEN * self.least_move;
         self.idle = if has_fallen { 0 } else { self.idle + 1 };
         self.least_energy = self.least_energy.min(report.energy_after);
         self.least_move = self.least_move.min(report.largest_move);

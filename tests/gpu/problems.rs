@@ -277,7 +277,7 @@ fn hard_constraints_are_met_with_sweeps_on_the_card() {
     for backend in [Backend::Cpu, Backend::Gpu] {
         let mut solver = dragged(backend);
         let report = solved(&mut solver, &options(2000, 1e-9));
-        println!("{} sweeps, {} of the card: {:?}", report.iterations, report.gpu_iterations, report.outcome);
+        println!("{} sweeps, {} of the card: {:?}, objective {:e}", report.iterations, report.gpu_iterations, report.outcome, report.energy_after);
         assert_eq!(report.outcome, Outcome::Converged, "{report:?}");
         assert_eq!((report.backend, report.gpu_iterations > 0), (backend, backend == Backend::Gpu));
         assert!(solver.found().unwrap().largest_violation < 1e-9);

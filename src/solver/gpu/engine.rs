@@ -81,6 +81,7 @@ pub(in crate::solver) struct Engine {
     hard: Option<HardStep>,
     energies: wgpu::Buffer,
     moves: wgpu::Buffer,
+    point_count: usize,
     group_count: usize,
     /// Steps of conjugate gradients in each linear solve.
     steps: u32,
@@ -200,6 +201,7 @@ impl Engine {
             hard,
             energies,
             moves,
+            point_count: n,
             group_count,
             steps: FIRST_STEPS,
             seconds_per_iteration: 0.0,
@@ -277,7 +279,7 @@ impl Engine {
                 scale: &self.scale,
                 moves: &self.moves,
             };
-            self.history = Some(History::new(&self.card, capacity, self.current.len(), iterate)?);
+            self.history = Some(History::new(&self.card, capacity, self.point_count, iterate)?);
         }
         self.forget();
         Ok(())

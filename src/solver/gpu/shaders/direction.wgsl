@@ -22,8 +22,8 @@ fn main(
 ) {
     let i = (group.y * groups.x + group.x) * 64u + lane;
     if i < factors.count {
-        let new = factors.a * vectors[factors.first + i] + factors.b * vectors[factors.second + i];
+        let fresh = factors.a * vectors[factors.first + i] + factors.b * vectors[factors.second + i];
         // What was there before may be anything where it is not kept.
-        direction[i] = select(new, factors.keep * direction[i] + new, factors.keep != 0.0);
+        direction[i] = select(fresh, factors.keep * direction[i] + fresh, factors.keep != 0.0);
     }
 }
