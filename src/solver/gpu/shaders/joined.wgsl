@@ -1,0 +1,15 @@
+// The sum of the `LANES` threads that share a row, for the first of them.
+
+var<workgroup> parts: array<vec3f, 64>;
+
+fn joined(local: u32, part: vec3f) -> vec3f {
+    parts[local] = part;
+    workgroupBarrier();
+    var sum = part;
+    if local < 64u / LANES {
+        for (var at = local + 64u / LANES; at < 64u; at += 64u / LANES) {
+            sum += parts[at];
+        }
+    }
+    return sum;
+}

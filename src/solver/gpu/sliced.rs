@@ -1,0 +1,419 @@
+//! Sparse matrices on the card, and their products with three columns at once.
+//!
+//! Rows lie in *slices*, one for each workgroup of 64 threads. Where a matrix has fewer rows than a card has threads, some threads
+//! share each row. Within a slice entries are column by column, as long as its longest row, so that neighbouring threads read
+//! neighbouring memory. A matrix whose arrays would exceed a binding is cut into *pages* of whole slices, one run each.
+//!
+//! A vector is a buffer of four numbers per entry, the fourth not used. Every row is a sum of its own, in one order: pages
+//! change no bit.
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::Buffer;
+
+use super::card::{Access, Card, GROUP, Run};
+use crate::error::Result;
+use crate::linalg::rows::SparseRows;
+
+/// The text that all products begin with.
+const SLICED: &str = include_str!("shaders/sliced.wgsl");
+
+/// How threads that share a row add up.
+const JOINED: &str = include_str!("shaders/joined.wgsl");
+
+/// The same where each row has a thread of its own.
+const ALONE: &str = "fn joined(local: u32, part: vec3f) -> vec3f { return part; }\n";
+
+/// Threads that fill a large card: with fewer rows than this, threads share rows.
+const FULL_CARD: usize = 1 << 17;
+
+/// A thread that shares a row has so many entries of it at least, on average; else adding up costs more than it saves.
+const LEAST_SHARE: usize = 4;
+
+/// Threads that share a row, at most.
+const MOST_LANES: usize = 16;
+
+/// A sparse matrix on the card.
+pub(super) struct Sliced {
+    pages: Vec<Page>,
+    row_count: usize,
+    /// Threads that share a row: a power of two.
+    lanes: usize,
+}
+
+/// Slices that one binding holds.
+struct Page {
+    /// The first row, and the row after the last.
+    first: usize,
+    end: usize,
+    /// Where each slice begins, and where the last one ends, in columns of 64 entries.
+    starts: Buffer,
+    columns: Buffer,
+    values: Buffer,
+}
+
+/// See `struct Page` in `sliced.wgsl`.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Numbers {
+    first: u32,
+    end: u32,
+    keep: f32,
+    factor: f32,
+}
+
+/// What is done with a row of `A x`.
+pub(super) struct Finish {
+    pub(super) name: &'static str,
+    pub(super) text: &'static str,
+    /// What it binds from 5 on.
+    pub(super) accesses: &'static [Access],
+}
+
+const RESIDUAL: Finish =
+    Finish { name: "residual", text: include_str!("shaders/residual.wgsl"), accesses: &[Access::Read, Access::Write] };
+
+const COMBINATION: Finish =
+    Finish { name: "combination", text: include_str!("shaders/combination.wgsl"), accesses: &[Access::Write] };
+
+const IMAGE: Finish = Finish { name: "image", text: include_str!("shaders/image.wgsl"), accesses: &[Access::Write] };
+
+const ADDED_IMAGE: Finish =
+    Finish { name: "added image", text: include_str!("shaders/added_image.wgsl"), accesses: &[Access::Write] };
+
+const CHEBYSHEV: Finish = Finish {
+    name: "chebyshev",
+    text: include_str!("shaders/chebyshev.wgsl"),
+    accesses: &[Access::Read, Access::Write, Access::Write],
+};
+
+impl Sliced {
+    /// Copies `matrix` to the card; `name` is what errors call it.
+    ///
+    /// # Errors
+    /// Status `BackendUnavailable` if the card has no room, `BackendFailed` if it was lost.
+    pub(super) fn new(card: &Card, name: &str, matrix: &SparseRows) -> Result<Self> {
+        let row_count = matrix.row_count();
+        let lengths: Vec<usize> = (0..row_count).map(|i| matrix.row(i).count()).collect();
+        let lanes = lanes(row_count, lengths.iter().sum());
+        let width = |slice: &[usize]| slice.iter().max().map_or(0, |longest| longest.div_ceil(lanes));
+        let slice_rows = GROUP as usize / lanes;
+        let widths: Vec<usize> = lengths.chunks(slice_rows).map(width).collect();
+        // Columns of a slice that one binding holds.
+        let most = (card.binding_bytes() / (u64::from(GROUP) * size_of::<u32>() as u64)) as usize;
+        let mut pages = Vec::new();
+        let mut first = 0;
+        while first < widths.len() {
+            let mut used = 0;
+            let fits = |width: &&usize| {
+                used += **width;
+                used <= most
+            };
+            // A slice that is too long by itself is left to the card to refuse.
+            let count = widths[first..].iter().take_while(fits).count().max(1);
+            let rows = [first * slice_rows, ((first + count) * slice_rows).min(row_count)];
+            pages.push(Page::new(card, name, matrix, rows, &widths[first..first + count], lanes)?);
+            first += count;
+        }
+        Ok(Self { pages, row_count, lanes })
+    }
+
+    /// The number of rows.
+    pub(super) fn row_count(&self) -> usize {
+        self.row_count
+    }
+
+    /// The number of slices, in all pages together.
+    pub(super) fn slice_count(&self) -> usize {
+        self.row_count.div_ceil(GROUP as usize / self.lanes)
+    }
+
+    /// `y = b − A x`.
+    ///
+    /// # Errors
+    /// Status `BackendFailed`, as of all products.
+    pub(super) fn residual(&self, card: &Card, b: &Buffer, x: &Buffer, y: &Buffer) -> Result<Vec<Run>> {
+        self.runs(card, &RESIDUAL, [0.0; 2], x, &[b, y])
+    }
+
+    /// `y = A x`.
+    pub(super) fn image(&self, card: &Card, x: &Buffer, y: &Buffer) -> Result<Vec<Run>> {
+        self.runs(card, &IMAGE, [0.0; 2], x, &[y])
+    }
+
+    /// `y = y + A x`.
+    pub(super) fn add_image(&self, card: &Card, x: &Buffer, y: &Buffer) -> Result<Vec<Run>> {
+        self.runs(card, &ADDED_IMAGE, [0.0; 2], x, &[y])
+    }
+
+    /// `y = keep x + factor A x`, `A` being square.
+    pub(super) fn combination(&self, card: &Card, factors: [f64; 2], x: &Buffer, y: &Buffer) -> Result<Vec<Run>> {
+        self.runs(card, &COMBINATION, factors, x, &[y])
+    }
+
+    /// One step of Chebyshev's iteration: `change = keep change + factor (b − A x)` and `next = x + change`, `A` being square.
+    /// What `change` was does not matter where `keep` is 0.
+    pub(super) fn chebyshev(
+        &self,
+        card: &Card,
+        factors: [f64; 2],
+        [b, x, change, next]: [&Buffer; 4],
+    ) -> Result<Vec<Run>> {
+        self.runs(card, &CHEBYSHEV, factors, x, &[b, change, next])
+    }
+
+    /// A run for each page: `finish` with the factors `[keep, factor]` and what it binds.
+    pub(super) fn runs(
+        &self,
+        card: &Card,
+        finish: &Finish,
+        [keep, factor]: [f64; 2],
+        x: &Buffer,
+        bound: &[&Buffer],
+    ) -> Result<Vec<Run>> {
+        let name = format!("sliced {} {}", finish.name, self.lanes);
+        let lanes = format!("const LANES = {}u;\n", self.lanes);
+        let joined = if self.lanes == 1 { ALONE } else { JOINED };
+        let mut accesses = vec![Access::Uniform, Access::Read, Access::Read, Access::Read, Access::Read];
+        accesses.extend(finish.accesses);
+        let kernel = card.kernel(&name, &[&lanes, joined, SLICED, finish.text], &accesses)?;
+        let run = |page: &Page| {
+            let (keep, factor) = (keep as f32, factor as f32);
+            let numbers = card.uniform(&Numbers { first: page.first as u32, end: page.end as u32, keep, factor });
+            let mut buffers = vec![&numbers, &page.starts, &page.columns, &page.values, x];
+            buffers.extend(bound);
+            card.run_of(&kernel, &buffers, (page.end - page.first) * self.lanes)
+        };
+        Ok(self.pages.iter().map(run).collect())
+    }
+}
+
+impl Page {
+    /// The rows from `first` to `end`, in slices of these widths.
+    fn new(
+        card: &Card,
+        name: &str,
+        matrix: &SparseRows,
+        [first, end]: [usize; 2],
+        widths: &[usize],
+        lanes: usize,
+    ) -> Result<Self> {
+        let group = GROUP as usize;
+        let slice_rows = group / lanes;
+        let mut starts = vec![0_u32];
+        starts.extend(widths.iter().scan(0, |sum, width| {
+            *sum += *width as u32;
+            Some(*sum)
+        }));
+        let count = widths.iter().sum::<usize>() * group;
+        let (mut columns, mut values) = (vec![0_u32; count], vec![0.0_f32; count]);
+        for i in first..end {
+            let (slice, r) = ((i - first) / slice_rows, (i - first) % slice_rows);
+            let place =
+                |entry: usize| (starts[slice] as usize + entry / lanes) * group + entry % lanes * slice_rows + r;
+            let mut length = 0;
+            for (entry, (column, value)) in matrix.row(i).enumerate() {
+                (columns[place(entry)], values[place(entry)]) = (column as u32, value as f32);
+                length = entry + 1;
+            }
+            // Padding reads what the row reads anyway.
+            let padding = matrix.row(i).next().map_or(0, |(column, _)| column as u32);
+            (length..widths[slice] * lanes).for_each(|entry| columns[place(entry)] = padding);
+        }
+        Ok(Self {
+            first,
+            end,
+            starts: card.buffer(name, &starts)?,
+            columns: card.buffer(name, &columns)?,
+            values: card.buffer(name, &values)?,
+        })
+    }
+}
+
+/// Threads that share each of `row_count` rows with `entry_count` entries in all. It depends on the matrix alone.
+fn lanes(row_count: usize, entry_count: usize) -> usize {
+    let mut lanes = 1;
+    while 2 * lanes <= MOST_LANES
+        && row_count * 2 * lanes <= FULL_CARD
+        && entry_count >= 2 * lanes * LEAST_SHARE * row_count
+    {
+        lanes *= 2;
+    }
+    lanes
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::solver::backend::BackendOptions;
+    use crate::solver::gpu::frame::Four;
+
+    /// The card with bindings of at most so many bytes (0: what it allows), if there is one; else says what is left out.
+    pub(in crate::solver::gpu) fn card(binding_bytes: u64) -> Option<std::sync::Arc<Card>> {
+        match Card::shared(&BackendOptions { binding_bytes, ..Default::default() }) {
+            Ok(card) => Some(card),
+            Err(error) => {
+                eprintln!("LEFT OUT: {error}");
+                None
+            }
+        }
+    }
+
+    /// The same numbers in −1 to 1 for the same seed.
+    pub(in crate::solver::gpu) struct Random(pub(in crate::solver::gpu) u64);
+
+    impl Random {
+        pub(in crate::solver::gpu) fn bits(&mut self) -> u64 {
+            // The constants of Knuth's generator, of which the high bits are good.
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            self.0 >> 33
+        }
+
+        pub(in crate::solver::gpu) fn number(&mut self) -> f64 {
+            self.bits() as f64 / (1_u64 << 30) as f64 - 1.0
+        }
+
+        pub(in crate::solver::gpu) fn vector(&mut self, count: usize) -> Vec<Four> {
+            (0..count).map(|_| [self.number() as f32, self.number() as f32, self.number() as f32, f32::NAN]).collect()
+        }
+    }
+
+    /// A matrix whose rows have up to `most` entries; some have none.
+    fn matrix(random: &mut Random, rows: usize, columns: usize, most: u64) -> SparseRows {
+        let mut row = || {
+            let count = random.bits() % (most + 1);
+            let mut found: Vec<u32> = (0..count).map(|_| (random.bits() % columns as u64) as u32).collect();
+            found.sort_unstable();
+            found.dedup();
+            found.into_iter().map(|column| (column, random.number())).collect::<Vec<_>>()
+        };
+        let rows: Vec<_> = (0..rows).map(|_| row()).collect();
+        SparseRows::from_rows(columns, rows.into_iter())
+    }
+
+    /// What `combine(i, A x)` is with `A x` in double precision, against what the card found: the greatest difference.
+    fn check(matrix: &SparseRows, x: &[Four], found: &[Four], combine: impl Fn(usize, usize, f64) -> f64, what: &str) {
+        assert_eq!(found.len(), matrix.row_count());
+        for (i, found) in found.iter().enumerate() {
+            for (lane, found) in found[..3].iter().enumerate() {
+                let (mut sum, mut size) = (0.0, 1.0);
+                for (j, value) in matrix.row(i) {
+                    sum += value * f64::from(x[j][lane]);
+                    size += (value * f64::from(x[j][lane])).abs();
+                }
+                let expected = combine(i, lane, sum);
+                // Each of up to some hundred terms rounds once, and so do a few operations on numbers of size 1.
+                let error = (f64::from(*found) - expected).abs();
+                assert!(error < 2e-6 * size, "{what}: row {i} lane {lane}: {found} instead of {expected}");
+            }
+            assert_eq!(found[3], 0.0, "{what}: the fourth number of row {i}");
+        }
+    }
+
+    #[test]
+    fn products_are_those_in_double_precision_at_any_size_and_length_of_rows() {
+        let Some(card) = card(0) else { return };
+        let mut lanes_met = Vec::new();
+        for (seed, rows) in [1, 63, 64, 65, 1000, 10_001].into_iter().enumerate() {
+            for most in [0, 3, 20, 70, 200] {
+                let mut random = Random(seed as u64);
+                let matrix = matrix(&mut random, rows, rows, most);
+                let sliced = Sliced::new(&card, "a matrix", &matrix).unwrap();
+                lanes_met.push(sliced.lanes);
+                let [x, b, change] = std::array::from_fn(|_| random.vector(rows));
+                let upload = |values: &[Four]| card.buffer("a vector", values).unwrap();
+                let [on_x, on_b, on_change] = [&x, &b, &change].map(|values| upload(values));
+                let nothing = vec![[f32::NAN; 4]; rows];
+                let [residual, image, sum, combination, first, next] = [
+                    upload(&nothing),
+                    upload(&nothing),
+                    upload(&b),
+                    upload(&nothing),
+                    upload(&nothing),
+                    upload(&nothing),
+                ];
+                let all = [
+                    sliced.residual(&card, &on_b, &on_x, &residual),
+                    sliced.image(&card, &on_x, &image),
+                    sliced.add_image(&card, &on_x, &sum),
+                    sliced.combination(&card, [0.5, -0.25], &on_x, &combination),
+                    // What nothing is kept of may be anything.
+                    sliced.chebyshev(&card, [0.0, 0.75], [&on_b, &on_x, &first, &next]),
+                    sliced.chebyshev(&card, [0.5, 0.75], [&on_b, &on_x, &on_change, &room(&card, rows)]),
+                ];
+                for runs in all {
+                    card.submit(&runs.unwrap());
+                }
+                let buffers = [&residual, &image, &sum, &combination, &first, &next, &on_change];
+                let found: Vec<Vec<Four>> = card.read(&buffers.map(|buffer| (buffer, rows))).unwrap();
+                let of = |values: &[Four], i: usize, lane: usize| f64::from(values[i][lane]);
+                let check = |n: usize, combine: &dyn Fn(usize, usize, f64) -> f64, what: &str| {
+                    check(&matrix, &x, &found[n], combine, &format!("{what}, {rows} rows of up to {most}"));
+                };
+                check(0, &|i, lane, sum| of(&b, i, lane) - sum, "b − A x");
+                check(1, &|_, _, sum| sum, "A x");
+                check(2, &|i, lane, sum| of(&b, i, lane) + sum, "y + A x");
+                check(3, &|i, lane, sum| 0.5 * of(&x, i, lane) - 0.25 * sum, "keep x + factor A x");
+                check(4, &|i, lane, sum| 0.75 * (of(&b, i, lane) - sum), "the first change");
+                check(5, &|i, lane, sum| of(&x, i, lane) + 0.75 * (of(&b, i, lane) - sum), "the next x");
+                let later = |i, lane, sum| 0.5 * of(&change, i, lane) + 0.75 * (of(&b, i, lane) - sum);
+                check(6, &later, "a later change");
+            }
+        }
+        lanes_met.sort_unstable();
+        lanes_met.dedup();
+        assert_eq!(lanes_met, [1, 2, 4, 8, 16]);
+    }
+
+    fn room(card: &Card, rows: usize) -> Buffer {
+        card.room("a vector", (rows * size_of::<Four>()) as u64).unwrap()
+    }
+
+    #[test]
+    fn matrices_need_not_be_square() {
+        let Some(card) = card(0) else { return };
+        for (rows, columns, most) in [(70, 900, 60), (900, 70, 5), (3, 5000, 2000)] {
+            let mut random = Random(5);
+            let matrix = matrix(&mut random, rows, columns, most);
+            let sliced = Sliced::new(&card, "a matrix", &matrix).unwrap();
+            let x = random.vector(columns);
+            let (on_x, y) = (card.buffer("a vector", &x).unwrap(), room(&card, rows));
+            card.submit(&sliced.image(&card, &on_x, &y).unwrap());
+            check(&matrix, &x, &card.read(&[(&y, rows)]).unwrap()[0], |_, _, sum| sum, "A x");
+        }
+    }
+
+    #[test]
+    fn pages_change_no_bit() {
+        let image = |binding_bytes: u64, most: u64| {
+            let card = card(binding_bytes)?;
+            let mut random = Random(7);
+            let matrix = matrix(&mut random, 3001, 3001, most);
+            let sliced = Sliced::new(&card, "a matrix", &matrix).unwrap();
+            let x = card.buffer("a vector", &random.vector(3001)).unwrap();
+            let y = card.buffer("a vector", &random.vector(3001)).unwrap();
+            card.submit(&sliced.residual(&card, &y, &x, &room(&card, 3001)).unwrap());
+            card.submit(&sliced.add_image(&card, &x, &y).unwrap());
+            let bits = |y: &Four| y.map(f32::to_bits);
+            let found: Vec<Vec<Four>> = card.read(&[(&y, 3001)]).unwrap();
+            Some((found[0].iter().map(bits).collect::<Vec<_>>(), sliced.pages.len()))
+        };
+        for most in [20, 200] {
+            let Some((whole, pages)) = image(0, most) else { return };
+            assert_eq!(pages, 1);
+            // Room for the vectors.
+            let Some((cut, pages)) = image(50_000, most) else { return };
+            assert!(pages > 3, "{pages} pages");
+            assert!(cut == whole, "{pages} pages change bits, with up to {most} entries in a row");
+        }
+    }
+
+    #[test]
+    fn what_is_too_large_for_a_binding_is_refused() {
+        let Some(card) = card(4096) else { return };
+        // One slice, of 4 rows that 16 threads share each, takes 32 kB.
+        let matrix = SparseRows::from_rows(2000, (0..4).map(|_| (0..2000).map(|j| (j, 1.0)).collect()));
+        let error = Sliced::new(&card, "the matrix", &matrix).err().unwrap();
+        assert_eq!(error.status(), crate::error::Status::BackendUnavailable);
+        assert!(error.to_string().contains("the matrix takes"), "{error}");
+    }
+}
