@@ -50,6 +50,24 @@ struct Level {
     change: Vec<Lanes>,
 }
 
+/// Two steps of Chebyshev's iteration. The first changes the solution by the residual over `middle`, the second by `keep` of
+/// that change and `factor` times the residual.
+#[derive(Clone, Copy)]
+pub(crate) struct Smoother {
+    pub(crate) middle: f64,
+    pub(crate) keep: f64,
+    pub(crate) factor: f64,
+}
+
+/// What a level is made of, for a twin on another machine.
+#[cfg(feature = "gpu")]
+pub(crate) struct LevelParts<'a> {
+    pub(crate) matrix: &'a SparseRows,
+    pub(crate) smoother: Smoother,
+    /// From the next level to this and back; none on the last.
+    pub(crate) transfer: Option<&'a (SparseRows, SparseRows)>,
+}
+
 /// An approximate inverse.
 pub struct Multilevel {
     levels: Vec<Level>,
@@ -86,9 +104,36 @@ impl Multilevel {
         (matrix, b, x)
     }
 
+    /// The levels, the finest first.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn levels(&self) -> impl Iterator<Item = LevelParts<'_>> {
+        self.levels.iter().map(|level| LevelParts {
+            matrix: &level.matrix,
+            smoother: Smoother::new(level.greatest),
+            transfer: level.transfer.as_ref(),
+        })
+    }
+
+    /// True if the last level is solved; else it is smoothed.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn is_coarsest_solved(&self) -> bool {
+        self.coarsest.is_some()
+    }
+
     /// Applies the approximate inverse to the right-hand side. Allocates nothing.
     pub fn run(&mut self, is_parallel: bool) {
         cycle(&mut self.levels, self.coarsest.as_mut(), is_parallel);
+    }
+}
+
+impl Smoother {
+    /// For eigenvalues up to `greatest`.
+    fn new(greatest: f64) -> Self {
+        let least = SMOOTHED_PART * greatest;
+        let (middle, half) = (0.5 * (greatest + least), 0.5 * (greatest - least));
+        let ratio = half / middle;
+        let next_ratio = 1.0 / (2.0 / ratio - ratio);
+        Self { middle, keep: ratio * next_ratio, factor: 2.0 * next_ratio / half }
     }
 }
 
@@ -142,10 +187,7 @@ impl Level {
     /// Two steps of Chebyshev's iteration from `x`, or from 0.
     fn smooth(&mut self, is_from_zero: bool, is_parallel: bool) {
         let Self { matrix, greatest, b, x, change, .. } = self;
-        let least = SMOOTHED_PART * *greatest;
-        let (middle, half) = (0.5 * (*greatest + least), 0.5 * (*greatest - least));
-        let ratio = half / middle;
-        let next_ratio = 1.0 / (2.0 / ratio - ratio);
+        let Smoother { middle, keep, factor } = Smoother::new(*greatest);
         if is_from_zero {
             let start = |b: &Lanes| b.map(|b| b / middle);
             each_chunk(change, is_parallel, |first, part| {
@@ -156,7 +198,7 @@ impl Level {
             matrix.apply(0.0, 1.0 / middle, b, x, change, is_parallel);
             add(x, change, is_parallel);
         }
-        matrix.apply(ratio * next_ratio, 2.0 * next_ratio / half, b, x, change, is_parallel);
+        matrix.apply(keep, factor, b, x, change, is_parallel);
         add(x, change, is_parallel);
     }
 

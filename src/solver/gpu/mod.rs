@@ -4,6 +4,8 @@ mod card;
 mod frame;
 mod local_step;
 #[cfg_attr(not(test), allow(dead_code, reason = "the global step is to use it"))]
+mod multilevel;
+#[cfg_attr(not(test), allow(dead_code, reason = "the global step is to use it"))]
 mod sliced;
 
 pub(in crate::solver) use card::Card;
