@@ -1,6 +1,8 @@
 //! Iterations on the graphics card.
 
 mod card;
+#[cfg_attr(not(test), allow(dead_code, reason = "the global step is to use it"))]
+mod conjugate_gradients;
 mod frame;
 mod local_step;
 #[cfg_attr(not(test), allow(dead_code, reason = "the global step is to use it"))]

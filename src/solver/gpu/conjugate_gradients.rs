@@ -1,0 +1,286 @@
+//! Conjugate gradients on the card, preconditioned by the multigrid cycle: the twin of `linalg/conjugate_gradients.rs`, in single
+//! precision and without reading anything back.
+//!
+//! Each coordinate has steps of its own. A step asks for two products, `r·z` and `z·Az`, and finds the curvature along its
+//! direction from those and the last step's: one pass over the matrix makes `Az` and both products, one workgroup adds
+//! up, one pass moves all vectors. Sums are trees of one shape: the bits are the same every time.
+//!
+//! Source: Chronopoulos, Gear 1989, "s-step iterative methods for symmetric linear systems", section 2. Where cancellation
+//! leaves few digits of the curvature we begin anew from the preconditioned residual.
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::Buffer;
+
+use super::card::{Access, Card, GROUP, Run};
+use super::frame::Four;
+use super::internal;
+use super::multilevel::Multilevel;
+use super::sliced::{Finish, Sliced};
+use crate::error::Result;
+use crate::linalg::multilevel;
+
+/// Sums over a workgroup.
+const PAIR_SUM: &str = include_str!("shaders/pair_sum.wgsl");
+
+/// Sums over pairs.
+const PAIRS: &str = include_str!("shaders/pairs.wgsl");
+
+/// Threads of the workgroups that add up pairs: as many as every card has.
+const WIDTH: usize = 256;
+
+/// Pairs that one workgroup adds up at most; more are summed in parts first.
+const MOST_PAIRS: usize = 8 * WIDTH;
+
+/// Pairs that each thread adds up where they are summed in parts.
+const PART_SHARE: usize = 4;
+
+/// Workgroups that sum parts, at most: what they make is little work for one.
+const MOST_PARTS: usize = 4 * WIDTH;
+
+const PRODUCTS: Finish = Finish {
+    name: "products",
+    text: concat!("const WIDTH = 64u;\n", include_str!("shaders/pair_sum.wgsl"), include_str!("shaders/products.wgsl")),
+    accesses: &[Access::Read, Access::Write, Access::Write],
+};
+
+/// The solver of `A x = b` for three right-hand sides, `A` being of unit diagonal.
+///
+/// Submitting `start` and then `step` any number of times solves from 0 with so many iterations. Each lowers `½ xᵀAx − bᵀx`;
+/// those after the solution is found change nothing. A coordinate whose products are not above 0 or not finite stays
+/// where it is. Products must neither vanish nor overflow in single precision: right-hand sides from 1e-15 to 1e15 are safe.
+pub(super) struct ConjugateGradients {
+    /// `b`, four numbers for each unknown, the last not used. Steps make the residual of it.
+    pub(super) right: Buffer,
+    /// `x`.
+    pub(super) solution: Buffer,
+    /// `r·z`, the residual with the preconditioned one, by coordinates: before the first step, and before the last. It is the
+    /// square of the error in the norm of `A`, within a small factor. In `w` 1 if there was a step, and 0.
+    pub(super) progress: Buffer,
+    pub(super) start: Vec<Run>,
+    pub(super) step: Vec<Run>,
+    /// Makes the second of `progress` that after the last step; costs most of a step, and changes nothing else.
+    pub(super) look: Vec<Run>,
+}
+
+/// See `struct Numbers` in `pairs.wgsl`.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Numbers {
+    pair_count: u32,
+    is_step: u32,
+}
+
+impl ConjugateGradients {
+    /// Copies what `cycle` is made of to the card; its first level's matrix is `A`.
+    ///
+    /// # Errors
+    /// Status `BackendUnavailable` if the card has no room, `BackendFailed` if it was lost.
+    pub(super) fn new(card: &Card, cycle: &multilevel::Multilevel) -> Result<Self> {
+        let cycle = Multilevel::new(card, cycle)?;
+        let matrix = cycle.matrix().ok_or_else(|| internal("a multigrid cycle has no level"))?;
+        let n = matrix.row_count();
+        let vector = || card.room("a vector of conjugate gradients", (n.max(1) * size_of::<Four>()) as u64);
+        let [right, solution, z, image, p, q] = [vector()?, vector()?, vector()?, vector()?, vector()?, vector()?];
+        let progress = card.room("the progress of conjugate gradients", 2 * size_of::<Four>() as u64)?;
+        let state = card.room("the state of conjugate gradients", 3 * size_of::<Four>() as u64)?;
+
+        let begin = card.kernel("begin", &[include_str!("shaders/begin.wgsl")], &[Access::Write, Access::Write])?;
+        let start = vec![card.run_of(&begin, &[&solution, &progress], n)];
+
+        let sums = Sums::new(card, matrix)?;
+        let before = |is_step: bool| -> Result<Vec<Run>> {
+            let mut runs = cycle.runs(card, &right, &z)?;
+            runs.extend(matrix.runs(card, &PRODUCTS, [0.0; 2], &z, &[&right, &image, &sums.pairs])?);
+            runs.extend(sums.runs(card, is_step, [&state, &progress])?);
+            Ok(runs)
+        };
+        let mut step = before(true)?;
+        let accesses =
+            [Access::Read, Access::Read, Access::Read, Access::Write, Access::Write, Access::Write, Access::Write];
+        let follow = card.kernel("follow", &[include_str!("shaders/follow.wgsl")], &accesses)?;
+        step.push(card.run_of(&follow, &[&state, &z, &image, &p, &q, &solution, &right], n));
+        let look = before(false)?;
+        Ok(Self { right, solution, progress, start, step, look })
+    }
+}
+
+/// The products of every slice, and how they are added up.
+struct Sums {
+    pairs: Buffer,
+    pair_count: usize,
+    /// The sums of parts, and how many; none where there is little to add up.
+    parts: Option<(Buffer, usize)>,
+}
+
+impl Sums {
+    fn new(card: &Card, matrix: &Sliced) -> Result<Self> {
+        let pair_count = matrix.slice_count();
+        let room =
+            |count: usize| card.room("the products of conjugate gradients", (2 * count * size_of::<Four>()) as u64);
+        let part_count = pair_count.div_ceil(PART_SHARE * WIDTH).min(MOST_PARTS);
+        let parts = if pair_count > MOST_PAIRS { Some((room(part_count)?, part_count)) } else { None };
+        Ok(Self { pairs: room(pair_count)?, pair_count, parts })
+    }
+
+    /// The runs that add up, and find the next step if `is_step`.
+    fn runs(&self, card: &Card, is_step: bool, [state, progress]: [&Buffer; 2]) -> Result<Vec<Run>> {
+        let width = format!("const WIDTH = {WIDTH}u;\n");
+        let numbers =
+            |pair_count: usize| card.uniform(&Numbers { pair_count: pair_count as u32, is_step: u32::from(is_step) });
+        let mut runs = Vec::new();
+        let (mut last, mut last_count) = (&self.pairs, self.pair_count);
+        if let Some((parts, count)) = &self.parts {
+            let texts = [&width, PAIR_SUM, PAIRS, include_str!("shaders/part_sums.wgsl")];
+            let kernel = card.kernel("part sums", &texts, &[Access::Uniform, Access::Read, Access::Write])?;
+            runs.push(card.run_of(&kernel, &[&numbers(last_count), last, parts], count * GROUP as usize));
+            (last, last_count) = (parts, *count);
+        }
+        let texts = [&width, PAIR_SUM, PAIRS, include_str!("shaders/steps.wgsl")];
+        let kernel = card.kernel("steps", &texts, &[Access::Uniform, Access::Read, Access::Write, Access::Write])?;
+        // One workgroup.
+        runs.push(card.run_of(&kernel, &[&numbers(last_count), last, state, progress], 1));
+        Ok(runs)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::conjugate_gradients;
+    use crate::linalg::rows::SparseRows;
+    use crate::linalg::simd::Lanes;
+    use crate::solver::gpu::multilevel::tests::{grid, prepared};
+    use crate::solver::gpu::sliced::tests::{Random, card};
+    use glam::DVec3;
+
+    type Three = [f64; 3];
+
+    /// `Σ x y` by coordinates.
+    fn dot(x: &[Lanes], y: &[Lanes]) -> Three {
+        let sum = |k: usize| x.iter().zip(y).map(|(x, y)| x[k] * y[k]).sum();
+        [sum(0), sum(1), sum(2)]
+    }
+
+    /// The error of `x` in the norm of `A`, relative to that of 0, by coordinates; 0 where the solution is 0 and found.
+    fn errors(matrix: &SparseRows, x: &[Lanes], solution: &[Lanes]) -> Three {
+        let norm = |x: &[Lanes]| {
+            let mut image = vec![[0.0; 4]; x.len()];
+            matrix.apply(0.0, -1.0, &[], x, &mut image, false);
+            dot(x, &image).map(f64::sqrt)
+        };
+        let difference: Vec<Lanes> =
+            x.iter().zip(solution).map(|(x, y)| std::array::from_fn(|k| x[k] - y[k])).collect();
+        let (error, size) = (norm(&difference), norm(solution));
+        std::array::from_fn(|k| if error[k] == 0.0 { 0.0 } else { error[k] / size[k] })
+    }
+
+    fn lanes_of(values: &[Four]) -> Vec<Lanes> {
+        values.iter().map(|v| [v[0], v[1], v[2], 0.0].map(f64::from)).collect()
+    }
+
+    /// Textbook conjugate gradients in double precision: the greatest error after each of `count` iterations.
+    fn reference(cycle: &mut multilevel::Multilevel, right: &[Lanes], solution: &[Lanes], count: usize) -> Vec<f64> {
+        let n = right.len();
+        let (mut x, mut p, mut q) = (vec![[0.0; 4]; n], vec![[0.0; 4]; n], vec![[0.0; 4]; n]);
+        let mut last = [0.0; 3];
+        let mut found = Vec::new();
+        cycle.parts().1.copy_from_slice(right);
+        for _ in 0..count {
+            cycle.run(false);
+            let (matrix, r, z) = cycle.parts();
+            let now = dot(r, z);
+            for (p, z) in p.iter_mut().zip(z.iter()) {
+                (0..3).for_each(|k| p[k] = z[k] + if last[k] > 0.0 { now[k] / last[k] * p[k] } else { 0.0 });
+            }
+            matrix.apply(0.0, -1.0, &[], &p, &mut q, false);
+            let bend = dot(&p, &q);
+            for k in (0..3).filter(|k| bend[*k] > 0.0) {
+                x.iter_mut().zip(&p).for_each(|(x, p)| x[k] += now[k] / bend[k] * p[k]);
+                r.iter_mut().zip(&q).for_each(|(r, q)| r[k] -= now[k] / bend[k] * q[k]);
+            }
+            last = now;
+            found.push(errors(matrix, &x, solution).into_iter().fold(0.0, f64::max));
+        }
+        found
+    }
+
+    fn submit(card: &Card, gradients: &ConjugateGradients, right: &[Four], steps: usize) {
+        card.write(&gradients.right, right);
+        card.submit(&gradients.start);
+        (0..steps).for_each(|_| card.submit(&gradients.step));
+    }
+
+    fn solution(card: &Card, gradients: &ConjugateGradients, n: usize) -> Vec<Four> {
+        card.read(&[(&gradients.solution, n)]).unwrap().remove(0)
+    }
+
+    fn progress(card: &Card, gradients: &ConjugateGradients) -> [Four; 2] {
+        let found: Vec<Vec<Four>> = card.read(&[(&gradients.progress, 2)]).unwrap();
+        [found[0][0], found[0][1]]
+    }
+
+    /// A random right-hand side, a smooth one, and none.
+    fn right_hand_sides(n: usize) -> Vec<Four> {
+        let mut random = Random(n as u64);
+        (0..n).map(|i| [random.number() as f32, 1.0 + (i as f32 / n as f32), 0.0, f32::NAN]).collect()
+    }
+
+    /// Iterations at most, of both.
+    const MOST: usize = 40;
+
+    /// The error that solves are to reach, relative and in the norm of the matrix.
+    const WANTED: f64 = 1e-4;
+
+    #[test]
+    fn solutions_are_the_processors_after_as_many_iterations() {
+        let Some(card) = card(0) else { return };
+        for (sizes, spread, held) in [
+            ([1, 1, 1], 1.0, 1.0),
+            ([63, 1, 1], 1.0, 1.0),
+            ([64, 1, 1], 1.0, 1.0),
+            ([65, 1, 1], 1.0, 1.0),
+            ([73, 137, 1], 1.0, 1.0),
+            ([200, 200, 1], 1.0, 1.0),
+            ([200, 200, 1], 1e3, 0.01),
+            ([30, 30, 30], 1.0, 1.0),
+            ([30, 30, 30], 1e3, 0.01),
+        ] {
+            let (matrix, mut cycle) = prepared(&grid(sizes, spread, held));
+            let n = matrix.row_count();
+            let right = right_hand_sides(n);
+            let exact = exact(&grid(sizes, spread, held), &right);
+            let expected = reference(&mut cycle, &lanes_of(&right), &exact, MOST);
+            let gradients = ConjugateGradients::new(&card, &cycle).unwrap();
+            submit(&card, &gradients, &right, 0);
+            let mut found = Vec::new();
+            for _ in 0..MOST {
+                card.submit(&gradients.step);
+                let x = lanes_of(&solution(&card, &gradients, n));
+                found.push(errors(&matrix, &x, &exact).into_iter().fold(0.0, f64::max));
+            }
+            let count = |errors: &[f64]| 1 + errors.iter().position(|error| *error < WANTED).unwrap();
+            let least = found.iter().copied().fold(f64::INFINITY, f64::min);
+            println!(
+                "{sizes:?}, spread {spread}, held by {held}: {} iterations, {} on the processor; {least:.1e} at the least, {:.1e} after {MOST}; {} runs each",
+                count(&found),
+                count(&expected),
+                found[MOST - 1],
+                gradients.step.len()
+            );
+            assert!(count(&found) <= count(&expected) + 1, "{found:?} instead of {expected:?}");
+            // Iterations beyond the solution do no harm.
+            assert!(found[MOST - 1] < WANTED, "{:e} at the end", found[MOST - 1]);
+        }
+    }
+
+    /// The solution by the processor's conjugate gradients, for the matrix with unit diagonal.
+    fn exact(matrix: &crate::linalg::symmetric::SymmetricMatrix, right: &[Four]) -> Vec<Lanes> {
+        let n = right.len();
+        let root: Vec<f64> = (0..n).map(|i| matrix.diagonal(i).sqrt()).collect();
+        let scaled = |x: Lanes, scale: f64| x.map(|x| x * scale);
+        let mut x: Vec<Lanes> = lanes_of(right).into_iter().zip(&root).map(|(x, root)| scaled(x, *root)).collect();
+        let mut gradients = conjugate_gradients::ConjugateGradients::new(matrix).unwrap();
+        gradients.solve(&mut x, &vec![DVec3::ZERO; n], false);
+        x.into_iter().zip(&root).map(|(x, root)| scaled(x, *root)).collect()
+    }
+}
