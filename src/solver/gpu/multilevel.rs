@@ -1,5 +1,9 @@
 //! The multigrid cycle on the card: the twin of `linalg/multilevel.rs`, in single precision.
 //!
+//! The processor's levels have unknowns in which the diagonal is 1. Here they are divided by what the matrix takes near to 0,
+//! so that this becomes equal numbers, and the matrix springs (`sliced.rs`). The smoother then divides by the diagonal, whose
+//! inverse is the fourth number of every right-hand side.
+//!
 //! Smoothing from zero is a polynomial of the matrix with two terms, and so one pass over it. The last level is solved with the
 //! inverse of its Cholesky factor `L`, as `x = Wᵀ W b` with `W = L⁻¹`: rounded to single precision that is still symmetric
 //! and positive, which a rounded inverse is not where the matrix is near to singular, and round-off stays along the vectors
@@ -19,6 +23,7 @@ pub(super) struct Multilevel {
     levels: Vec<Level>,
     /// `W` and `Wᵀ` of the last level; none where it is smoothed only.
     coarsest: Option<[Sliced; 2]>,
+    scales: Vec<[f32; 2]>,
 }
 
 struct Level {
@@ -39,25 +44,43 @@ impl Multilevel {
     /// # Errors
     /// Status `BackendUnavailable` if the card has no room, `BackendFailed` if it was lost.
     pub(super) fn new(card: &Card, cycle: &multilevel::Multilevel) -> Result<Self> {
-        let level = |(number, parts): (usize, LevelParts<'_>)| Level::new(card, &parts, number == 0);
-        let levels = cycle.levels().enumerate().map(level).collect::<Result<_>>()?;
-        let last = cycle.levels().last().filter(|_| cycle.is_coarsest_solved());
-        let coarsest = match last.and_then(|last| inverse_factor(last.matrix)) {
+        let parts: Vec<LevelParts<'_>> = cycle.levels().collect();
+        let units: Vec<Vec<f64>> = parts.iter().map(|parts| unit(parts.near_null)).collect();
+        let mut levels = Vec::with_capacity(parts.len());
+        for (i, (parts, unit)) in parts.iter().zip(&units).enumerate() {
+            let next_unit = units.get(i + 1).map(|unit| &unit[..]);
+            levels.push(Level::new(card, parts, unit, next_unit, i == 0)?);
+        }
+        let coarsest = match (parts.last(), units.last()) {
+            (Some(last), Some(unit)) if cycle.is_coarsest_solved() => inverse_factor(last.matrix, unit),
+            _ => None,
+        };
+        let coarsest = match coarsest {
             Some(inverse) => Some([
                 Sliced::new(card, "the factor of the coarsest level", &inverse)?,
                 Sliced::new(card, "the factor of the coarsest level", &inverse.transposed())?,
             ]),
             None => None,
         };
-        Ok(Self { levels, coarsest })
+        let scales = match (parts.first(), units.first()) {
+            (Some(first), Some(unit)) => scales(first.matrix, unit),
+            _ => Vec::new(),
+        };
+        Ok(Self { levels, coarsest, scales })
     }
 
-    /// The matrix whose inverse this is near to.
+    /// The matrix whose inverse this is near to, as springs.
     pub(super) fn matrix(&self) -> Option<&Sliced> {
         self.levels.first().map(|level| &level.matrix)
     }
 
-    /// The runs that apply the approximate inverse to `b` and leave the result in `x`.
+    /// For each unknown of the first level, what its unit is in the processor's unknowns, and the inverse of the diagonal.
+    pub(super) fn scales(&self) -> &[[f32; 2]] {
+        &self.scales
+    }
+
+    /// The runs that apply the approximate inverse to `b` and leave the result in `x`. The fourth numbers of `b` are the second
+    /// of [`Self::scales`].
     ///
     /// # Errors
     /// Status `BackendFailed` if the card was lost.
@@ -66,6 +89,19 @@ impl Multilevel {
         add_cycle(card, &self.levels, self.coarsest.as_ref(), [b, x], &mut runs)?;
         Ok(runs)
     }
+}
+
+/// What an unknown of the card is in the processor's: `near_null`, the greatest being 1, so that numbers stay in range.
+fn unit(near_null: &[f64]) -> Vec<f64> {
+    let greatest = near_null.iter().copied().fold(0.0, f64::max);
+    near_null.iter().map(|value| value / greatest).collect()
+}
+
+/// See [`Multilevel::scales`].
+fn scales(matrix: &SparseRows, unit: &[f64]) -> Vec<[f32; 2]> {
+    let diagonal = |i: usize| matrix.row(i).find(|(j, _)| *j == i).map_or(1.0, |(_, value)| value);
+    let of = |(i, unit): (usize, &f64)| [*unit as f32, (1.0 / (diagonal(i) * unit * unit)) as f32];
+    unit.iter().enumerate().map(of).collect()
 }
 
 /// The runs of a V-cycle from the first of `levels`.
@@ -81,7 +117,7 @@ fn add_cycle(
         && let Some([next_b, next_x]) = &next.own
     {
         runs.extend(fine.smoothed_from_zero(card, b, x)?);
-        runs.extend(fine.matrix.residual(card, b, x, &fine.change)?);
+        runs.extend(fine.matrix.springs_residual(card, b, x, &fine.change)?);
         runs.extend(restriction.image(card, &fine.change, next_b)?);
         add_cycle(card, coarser, coarsest, [next_b, next_x], runs)?;
         runs.extend(prolongation.add_image(card, next_x, x)?);
@@ -97,30 +133,50 @@ fn add_cycle(
 }
 
 impl Level {
-    fn new(card: &Card, parts: &LevelParts<'_>, is_first: bool) -> Result<Self> {
-        let room =
-            || card.room("a vector of the multigrid cycle", (parts.matrix.row_count() * size_of::<Four>()) as u64);
-        let transfer = match parts.transfer {
-            Some((prolongation, restriction)) => Some([
-                Sliced::new(card, "a prolongation of the multigrid cycle", prolongation)?,
-                Sliced::new(card, "a restriction of the multigrid cycle", restriction)?,
-            ]),
-            None => None,
+    /// `unit` is what an unknown is in the processor's, `next_unit` the same on the next level.
+    fn new(
+        card: &Card,
+        parts: &LevelParts<'_>,
+        unit: &[f64],
+        next_unit: Option<&[f64]>,
+        is_first: bool,
+    ) -> Result<Self> {
+        let mut matrix = parts.matrix.clone();
+        matrix.map(|i, j, value| unit[i] * unit[j] * value);
+        let transfer = match (parts.transfer, next_unit) {
+            (Some((prolongation, _)), Some(next_unit)) => {
+                let mut prolongation = prolongation.clone();
+                prolongation.map(|i, j, value| next_unit[j] / unit[i] * value);
+                Some([
+                    Sliced::new(card, "a prolongation of the multigrid cycle", &prolongation)?,
+                    Sliced::new(card, "a restriction of the multigrid cycle", &prolongation.transposed())?,
+                ])
+            }
+            _ => None,
+        };
+        let zero = || card.room("a vector of the multigrid cycle", (unit.len() * size_of::<Four>()) as u64);
+        let own = if is_first {
+            None
+        } else {
+            // Restricting leaves the fourth numbers as they are.
+            let right: Vec<Four> = scales(parts.matrix, unit).iter().map(|scale| [0.0, 0.0, 0.0, scale[1]]).collect();
+            Some([card.buffer("a vector of the multigrid cycle", &right)?, zero()?])
         };
         Ok(Self {
-            matrix: Sliced::new(card, "a matrix of the multigrid cycle", parts.matrix)?,
+            matrix: Sliced::springs(card, "a matrix of the multigrid cycle", &matrix)?,
             smoother: parts.smoother,
             transfer,
-            own: if is_first { None } else { Some([room()?, room()?]) },
-            change: room()?,
-            next: room()?,
+            own,
+            change: zero()?,
+            next: zero()?,
         })
     }
 
-    /// Two steps from 0. The first solution is `b / middle`, so the second is `b` and `A b` with a factor each.
+    /// Two steps from 0. With the diagonal's inverse `D` the first solution is `D b / middle`, so the second is `D b` and
+    /// `D A D b` with a factor each.
     fn smoothed_from_zero(&self, card: &Card, b: &Buffer, x: &Buffer) -> Result<Vec<Run>> {
         let Smoother { middle, keep, factor } = self.smoother;
-        self.matrix.combination(card, [(1.0 + keep) / middle + factor, -factor / middle], b, x)
+        self.matrix.smoothed_from_zero(card, [(1.0 + keep) / middle + factor, -factor / middle], b, x)
     }
 
     /// Two steps from `x`.
@@ -132,8 +188,9 @@ impl Level {
     }
 }
 
-/// The inverse of the Cholesky factor of `matrix`, which is small; `None` if a pivot is not above 0.
-fn inverse_factor(matrix: &SparseRows) -> Option<SparseRows> {
+/// The inverse of the Cholesky factor of `matrix`, which is small, in unknowns of these units; `None` if a pivot is not
+/// above 0.
+fn inverse_factor(matrix: &SparseRows, unit: &[f64]) -> Option<SparseRows> {
     let n = matrix.row_count();
     let mut factor = vec![vec![0.0; n]; n];
     for (i, row) in factor.iter_mut().enumerate() {
@@ -163,7 +220,10 @@ fn inverse_factor(matrix: &SparseRows) -> Option<SparseRows> {
         own.iter_mut().for_each(|own| *own /= row[i]);
         inverse.push(own);
     }
-    let entries = |row: Vec<f64>| (0..).zip(row).filter(|(_, value)| *value != 0.0).collect();
+    let entries = |row: Vec<f64>| {
+        let scaled = (0..).zip(row).zip(unit).map(|((j, value), unit)| (j, value / unit));
+        scaled.filter(|(_, value)| *value != 0.0).collect()
+    };
     Some(SparseRows::from_rows(n, inverse.into_iter().map(entries)))
 }
 
@@ -212,12 +272,15 @@ pub(super) mod tests {
     fn difference(card: &Card, cycle: &mut multilevel::Multilevel) -> (f64, usize) {
         let (_, b, _) = cycle.parts();
         let n = b.len();
-        let right = Random(n as u64).vector(n);
+        let mut right = Random(n as u64).vector(n);
         b.iter_mut().zip(&right).for_each(|(b, right)| *b = [right[0], right[1], right[2], 0.0].map(f64::from));
         cycle.run(false);
         let on_card = Multilevel::new(card, cycle).unwrap();
+        for (right, [unit, inverse_diagonal]) in right.iter_mut().zip(on_card.scales()) {
+            *right = [unit * right[0], unit * right[1], unit * right[2], *inverse_diagonal];
+        }
         let b = card.buffer("b", &right).unwrap();
-        let x = card.buffer("x", &vec![[f32::NAN; 4]; n]).unwrap();
+        let x = card.buffer("x", &vec![[f32::NAN, f32::NAN, f32::NAN, 0.0]; n]).unwrap();
         let runs = on_card.runs(card, &b, &x).unwrap();
         card.submit(&runs);
         let first: Vec<Vec<Four>> = card.read(&[(&x, n)]).unwrap();
@@ -227,11 +290,11 @@ pub(super) mod tests {
         assert!(first == found, "the second time is not the first");
         let (_, _, expected) = cycle.parts();
         let size = expected.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
-        let error = |(expected, found): (&Lanes, &Four)| {
+        let found = found[0].iter().zip(on_card.scales()).map(|(x, [unit, _])| x.map(|x| x * unit));
+        let error = |(expected, found): (&Lanes, Four)| {
             (0..3).map(|k| (expected[k] - f64::from(found[k])).abs()).fold(0.0, f64::max)
         };
-        let greatest = expected.iter().zip(&found[0]).map(error).fold(0.0, f64::max);
-        assert!(found[0].iter().all(|x| x[3] == 0.0));
+        let greatest = expected.iter().zip(found).map(error).fold(0.0, f64::max);
         (greatest / size, on_card.levels.len())
     }
 
@@ -275,7 +338,7 @@ pub(super) mod tests {
     #[test]
     fn the_inverse_factor_is_one() {
         let (matrix, _) = prepared(&grid([7, 5, 3], 1e3, 1e-3));
-        let inverse = inverse_factor(&matrix).unwrap();
+        let inverse = inverse_factor(&matrix, &[1.0; 105]).unwrap();
         // W A Wᵀ is the identity.
         let product = inverse.times(&matrix).times(&inverse.transposed());
         for i in 0..105 {
@@ -284,6 +347,6 @@ pub(super) mod tests {
             }
         }
         let indefinite = SparseRows::from_rows(2, [vec![(0, 1.0), (1, 2.0)], vec![(0, 2.0), (1, 1.0)]].into_iter());
-        assert!(inverse_factor(&indefinite).is_none());
+        assert!(inverse_factor(&indefinite, &[1.0; 2]).is_none());
     }
 }

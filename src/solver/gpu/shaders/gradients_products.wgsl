@@ -1,8 +1,8 @@
 // image = A x, and of every slice the products r·x and x·A x by coordinates.
 
-@group(0) @binding(5) var<storage, read> r: array<vec4f>;
-@group(0) @binding(6) var<storage, read_write> image_of_x: array<vec4f>;
-@group(0) @binding(7) var<storage, read_write> sums: array<vec4f>;
+@group(0) @binding(6) var<storage, read> r: array<vec4f>;
+@group(0) @binding(7) var<storage, read_write> image_of_x: array<vec4f>;
+@group(0) @binding(8) var<storage, read_write> sums: array<vec4f>;
 
 fn finish(slice: u32, local: u32, row: u32, is_row: bool, image: vec3f) {
     var own = Pair(vec3f(0.0), vec3f(0.0));

@@ -4,6 +4,7 @@
 // pAp = zAz - keep rz / step'.
 
 struct State {
+    // In w: how many steps were made.
     step: vec4f,
     keep: vec4f,
     // r·z of the last step; 0 where there was none.
@@ -37,11 +38,13 @@ fn main(@builtin(local_invocation_index) local: u32) {
     let is_first = progress[0].w == 0.0;
     if is_first {
         progress[0] = vec4f(sum.first, 1.0);
+        state.step.w = 0.0;
     }
-    progress[1] = vec4f(sum.first, 0.0);
+    progress[1] = vec4f(sum.first, state.step.w);
     if numbers.is_step == 0u {
         return;
     }
+    state.step.w += 1.0;
     for (var k = 0u; k < 3u; k++) {
         let product = sum.first[k];
         var keep = 0.0;
