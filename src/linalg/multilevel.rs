@@ -40,6 +40,8 @@ const SMOOTHED_PART: f64 = 0.2;
 /// The matrix of a level with unit diagonal, the way to the next, and the memory that a cycle needs.
 struct Level {
     matrix: SparseRows,
+    /// What the matrix takes near to 0; above 0 everywhere.
+    near_null: Vec<f64>,
     /// An upper bound of its eigenvalues.
     greatest: f64,
     /// From the next level to this and back; none on the last.
@@ -48,6 +50,25 @@ struct Level {
     b: Vec<Lanes>,
     x: Vec<Lanes>,
     change: Vec<Lanes>,
+}
+
+/// Two steps of Chebyshev's iteration. The first changes the solution by the residual over `middle`, the second by `keep` of
+/// that change and `factor` times the residual.
+#[derive(Clone, Copy)]
+pub(crate) struct Smoother {
+    pub(crate) middle: f64,
+    pub(crate) keep: f64,
+    pub(crate) factor: f64,
+}
+
+/// What a level is made of, for a twin on another machine.
+#[cfg(feature = "gpu")]
+pub(crate) struct LevelParts<'a> {
+    pub(crate) matrix: &'a SparseRows,
+    pub(crate) near_null: &'a [f64],
+    pub(crate) smoother: Smoother,
+    /// From the next level to this and back; none on the last.
+    pub(crate) transfer: Option<&'a (SparseRows, SparseRows)>,
 }
 
 /// An approximate inverse.
@@ -59,18 +80,17 @@ pub struct Multilevel {
 
 impl Multilevel {
     /// Prepares for `matrix`, which is square, symmetric, positive semidefinite, finite and of unit diagonal, and takes all
-    /// its values near to 0 at `near_null`.
+    /// its values near to 0 at `near_null`, which is above 0 everywhere.
     ///
     /// # Errors
     /// Status `TooLarge` if memory does not suffice.
-    pub fn new(matrix: SparseRows, mut near_null: Vec<f64>) -> Result<Self> {
-        let mut levels = vec![Level::new(matrix)];
+    pub fn new(matrix: SparseRows, near_null: Vec<f64>) -> Result<Self> {
+        let mut levels = vec![Level::new(matrix, near_null)];
         let mut strong = STRONG;
         while levels.len() < MOST_LEVELS {
             let Some(last) = levels.last_mut().filter(|last| last.matrix.row_count() > COARSEST) else { break };
-            let Some((coarse, coarse_null)) = last.coarsen(&near_null, strong) else { break };
-            near_null = coarse_null;
-            levels.push(Level::new(coarse));
+            let Some((coarse, coarse_null)) = last.coarsen(strong) else { break };
+            levels.push(Level::new(coarse, coarse_null));
             strong *= 0.5;
         }
         let coarsest = match levels.last() {
@@ -86,24 +106,52 @@ impl Multilevel {
         (matrix, b, x)
     }
 
+    /// The levels, the finest first.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn levels(&self) -> impl Iterator<Item = LevelParts<'_>> {
+        self.levels.iter().map(|level| LevelParts {
+            matrix: &level.matrix,
+            near_null: &level.near_null,
+            smoother: Smoother::new(level.greatest),
+            transfer: level.transfer.as_ref(),
+        })
+    }
+
+    /// True if the last level is solved; else it is smoothed.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn is_coarsest_solved(&self) -> bool {
+        self.coarsest.is_some()
+    }
+
     /// Applies the approximate inverse to the right-hand side. Allocates nothing.
     pub fn run(&mut self, is_parallel: bool) {
         cycle(&mut self.levels, self.coarsest.as_mut(), is_parallel);
     }
 }
 
+impl Smoother {
+    /// For eigenvalues up to `greatest`.
+    fn new(greatest: f64) -> Self {
+        let least = SMOOTHED_PART * greatest;
+        let (middle, half) = (0.5 * (greatest + least), 0.5 * (greatest - least));
+        let ratio = half / middle;
+        let next_ratio = 1.0 / (2.0 / ratio - ratio);
+        Self { middle, keep: ratio * next_ratio, factor: 2.0 * next_ratio / half }
+    }
+}
+
 impl Level {
-    fn new(matrix: SparseRows) -> Self {
+    fn new(matrix: SparseRows, near_null: Vec<f64>) -> Self {
         let n = matrix.row_count();
         let row_sum = |i| matrix.row(i).map(|(_, value)| value.abs()).sum::<f64>();
         let greatest = (0..n).map(row_sum).fold(1.0, f64::max);
         let zeros = || vec![[0.0; 4]; n];
-        Self { greatest, matrix, transfer: None, b: zeros(), x: zeros(), change: zeros() }
+        Self { greatest, matrix, near_null, transfer: None, b: zeros(), x: zeros(), change: zeros() }
     }
 
     /// The next level's matrix and near null vector, `None` where there is none worth having; sets [`Self::transfer`].
-    fn coarsen(&mut self, near_null: &[f64], strong: f64) -> Option<(SparseRows, Vec<f64>)> {
-        let n = self.matrix.row_count();
+    fn coarsen(&mut self, strong: f64) -> Option<(SparseRows, Vec<f64>)> {
+        let (n, near_null) = (self.matrix.row_count(), &self.near_null);
         let (aggregate_of, count) = aggregates(&self.matrix, strong);
         if count == 0 || count as f64 > LEAST_COARSENING * n as f64 {
             return None;
@@ -142,10 +190,7 @@ impl Level {
     /// Two steps of Chebyshev's iteration from `x`, or from 0.
     fn smooth(&mut self, is_from_zero: bool, is_parallel: bool) {
         let Self { matrix, greatest, b, x, change, .. } = self;
-        let least = SMOOTHED_PART * *greatest;
-        let (middle, half) = (0.5 * (*greatest + least), 0.5 * (*greatest - least));
-        let ratio = half / middle;
-        let next_ratio = 1.0 / (2.0 / ratio - ratio);
+        let Smoother { middle, keep, factor } = Smoother::new(*greatest);
         if is_from_zero {
             let start = |b: &Lanes| b.map(|b| b / middle);
             each_chunk(change, is_parallel, |first, part| {
@@ -156,7 +201,7 @@ impl Level {
             matrix.apply(0.0, 1.0 / middle, b, x, change, is_parallel);
             add(x, change, is_parallel);
         }
-        matrix.apply(ratio * next_ratio, 2.0 * next_ratio / half, b, x, change, is_parallel);
+        matrix.apply(keep, factor, b, x, change, is_parallel);
         add(x, change, is_parallel);
     }
 

@@ -2,7 +2,7 @@
 // threads share each row: entry `k * LANES + lane` of row `r` is at `(start + k) * 64 + lane * ROWS + r`, so that neighbouring
 // threads read neighbouring numbers. Short rows are padded with zeros.
 //
-// Before this text: `const LANES` and `fn joined`. After it: `fn finish`, and what it binds from 5 on.
+// Before this text: `const LANES` and `fn joined`. After it: what a term is (`plain.wgsl` or `springs.wgsl`), and `fn finish`.
 
 const ROWS = 64u / LANES;
 
@@ -31,12 +31,14 @@ fn main(
     if page.first + slice * ROWS >= page.end {
         return;
     }
+    let row = page.first + slice * ROWS + local % ROWS;
+    let own = own_of(min(row, page.end - 1u));
     var sum = vec3f(0.0);
     let end = starts[slice + 1u] * 64u;
     for (var at = starts[slice] * 64u; at < end; at += 64u) {
-        sum += values[at + local] * x[columns[at + local]].xyz;
+        sum += values[at + local] * term(x[columns[at + local]], own);
     }
-    let row = page.first + slice * ROWS + local;
-    // The slice's number in the whole matrix, the row, whether there is one for this thread, and the row of `A x`.
-    finish(page.first / ROWS + slice, local, row, local < ROWS && row < page.end, joined(local, sum));
+    let is_row = local < ROWS && row < page.end;
+    // The slice's number in the whole matrix, the row, whether it is this thread's, and the row of `A x`.
+    finish(page.first / ROWS + slice, local, row, is_row, whole(joined(local, sum), row, own));
 }
