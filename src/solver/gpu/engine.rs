@@ -143,7 +143,7 @@ impl Engine {
         let scale: Vec<f64> = (0..unknowns).map(|i| 1.0 / matrix.diagonal(i).sqrt()).collect();
         let near_null = scale.iter().map(|scale| 1.0 / scale).collect();
         let hierarchy = Multilevel::new(SparseRows::scaled(matrix, &scale), near_null)?;
-        let gradients = ConjugateGradients::new(&card, hierarchy)?;
+        let gradients = ConjugateGradients::new(&card, &hierarchy)?;
         let scale: Vec<f32> = scale.iter().map(|scale| *scale as f32).collect();
         let scale = card.buffer("the scale of unknowns", &scale)?;
 
@@ -334,10 +334,14 @@ impl Engine {
         Ok(found)
     }
 
+    /// The linear solve.
+    fn solving(&self) -> impl Iterator<Item = &Run> {
+        self.gradients.start.iter().chain((0..self.steps).flat_map(|_| &self.gradients.step))
+    }
+
     fn plain_iterations(&mut self, count: u32) {
         for _ in 0..count {
-            self.gradients.submit(&self.card, self.steps);
-            self.card.submit(&self.moving);
+            self.card.submit(self.solving().chain(&self.moving));
             if !self.has_host() {
                 self.card.submit(&self.projecting);
             }
@@ -365,7 +369,7 @@ impl Engine {
     /// From points of `energy` to those of the energy that is returned, with the number of evaluations.
     fn accelerated_iteration(&mut self, energy: f64, chooser: &mut Chooser) -> Result<(f64, u32)> {
         let Some(mut history) = self.history.take() else { return Err(super::internal("there is no history")) };
-        self.gradients.submit(&self.card, self.steps);
+        self.card.submit(self.solving());
         history.push(&self.card);
         let read: Vec<Vec<f32>> = self.card.read(&[history.shares(), (&self.gradients.progress, 8)])?;
         history.take(&read[0]);
@@ -508,7 +512,7 @@ fn mean(points: &[u32], all: &[DVec3]) -> DVec3 {
     first + points.iter().map(|point| all[*point as usize] - first).sum::<DVec3>() / points.len() as f64
 }
 
-/// How many steps of conjugate gradients the next solves need, from how far `steps` came: `r·z` of its start and end.
+/// How many steps of conjugate gradients the next solves need, after one of `steps`; see [`ConjugateGradients::progress`].
 fn steps_for(steps: u32, progress: &[f32]) -> u32 {
     let left = (0..3).filter(|&lane| progress[lane] > 0.0).map(|lane| f64::from(progress[4 + lane] / progress[lane]));
     let left = left.fold(0.0, f64::max);
@@ -516,7 +520,8 @@ fn steps_for(steps: u32, progress: &[f32]) -> u32 {
         return steps;
     }
     // Each step takes its part of the error.
-    let per_step = left.sqrt().ln() / f64::from(steps.max(1));
+    let made = f64::from(progress[7]).max(1.0);
+    let per_step = left.sqrt().ln() / made;
     let wanted = if per_step < 0.0 { (LINEAR_TOLERANCE.ln() / per_step).ceil() } else { f64::from(MOST_STEPS) };
     (wanted as u32).clamp(LEAST_STEPS, MOST_STEPS)
 }
@@ -528,7 +533,7 @@ mod tests {
     #[test]
     fn as_many_steps_are_made_as_the_tolerance_takes() {
         // Ten steps that leave a hundredth of the error: twenty leave a ten-thousandth.
-        let progress = |left: f32| [1.0, 2.0, 0.0, 0.0, left, 2.0 * left, 5.0, 0.0];
+        let progress = |left: f32| [1.0, 2.0, 0.0, 1.0, left, 2.0 * left, 5.0, 10.0];
         assert_eq!(steps_for(10, &progress(1e-4)), 20);
         assert_eq!(steps_for(10, &progress(1e-40)), LEAST_STEPS);
         assert_eq!(steps_for(10, &progress(2.0)), MOST_STEPS);

@@ -1,16 +1,15 @@
 //! Iterations on the graphics card.
 
 mod card;
-#[cfg_attr(not(test), allow(dead_code, reason = "the global step is to use it"))]
 mod conjugate_gradients;
+mod constants;
+mod engine;
 mod frame;
 mod gather;
 mod hard_step;
 mod history;
 mod local_step;
-#[cfg_attr(not(test), allow(dead_code, reason = "the global step is to use it"))]
 mod multilevel;
-#[cfg_attr(not(test), allow(dead_code, reason = "the global step is to use it"))]
 mod sliced;
 
 pub(in crate::solver) use card::Card;
