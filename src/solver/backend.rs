@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::{ProgressFn, SolveOptions, Solver};
 #[cfg(not(feature = "gpu"))]
 use super::{Outcome, Report};
+use super::{ProgressFn, SolveOptions, Solver};
 use crate::error::{Error, Result, Status};
 
 /// Why there is no card.

@@ -436,7 +436,11 @@ mod tests {
             combination.changes.fill(-0.7);
             let mut direction = vec![DVec3::ZERO; n];
             history.combine(&combination, &mut direction, is_parallel);
-            let products = [history.products().plain_along(&combination), history.products().change_change(1, 2), history.products().move_change(3, 0)];
+            let products = [
+                history.products().plain_along(&combination),
+                history.products().change_change(1, 2),
+                history.products().move_change(3, 0),
+            ];
             (direction, products.map(f64::to_bits))
         };
         let serial = run(false);

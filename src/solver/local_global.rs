@@ -6,8 +6,8 @@ use std::time::Instant;
 use glam::DVec3;
 
 use super::Workspace;
-use super::backend::Course;
 use super::acceleration::Accelerator;
+use super::backend::Course;
 use super::{
     Backend, Dynamics, LinearSolver, Outcome, Progress, ProgressFn, Rejections, Report, STALL_ITERATIONS, SolveOptions,
     Solver,
@@ -202,7 +202,8 @@ impl Solver {
             if self.turns_to_card(&report) {
                 let ended = self.iterate_on_card(&mut report, &mut course);
                 // In double precision; the processor goes on from here, with nothing to remember.
-                report.energy_after = self.on_pool(|solver, is_parallel| solver.local_step(true, is_parallel, &mut clock));
+                report.energy_after =
+                    self.on_pool(|solver, is_parallel| solver.local_step(true, is_parallel, &mut clock));
                 accelerator = self.begin_acceleration(Acceleration::QuasiNewton);
                 if let Some(outcome) = ended {
                     report.outcome = outcome;

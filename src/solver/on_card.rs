@@ -171,6 +171,7 @@ impl Solver {
         most: u32,
         is_first: bool,
         chooser: Option<&mut Chooser>,
+        near: f64,
     ) -> Result<ReadBack> {
         if engine.has_host() {
             self.follow_points();
@@ -194,7 +195,7 @@ impl Solver {
             engine.begin(now, &self.points);
         }
         let is_known = engine.is_warm();
-        let found = engine.iterate(engine.suggested_count().min(most), now, chooser)?;
+        let found = engine.iterate(most, now, chooser, near)?;
         self.points.copy_from_slice(&engine.current);
         if is_known {
             self.on_card.gpu.iterations += found.iterations;
@@ -222,7 +223,10 @@ impl Solver {
     pub(super) fn iterate_on_backends(&mut self, iterations: u32) -> Result<u32> {
         let mut made = 0;
         let may_run = self.backend != Backend::Cpu && self.on_card.refusal.is_none();
-        while may_run && made < iterations && self.on_card.cpu.per_iteration().is_none() && self.backend == Backend::Automatic
+        while may_run
+            && made < iterations
+            && self.on_card.cpu.per_iteration().is_none()
+            && self.backend == Backend::Automatic
         {
             let started = Instant::now();
             self.on_pool(|solver, is_parallel| solver.iterate_blindly(1, is_parallel));
@@ -245,7 +249,7 @@ impl Solver {
         let mut chooser = self.card_chooser(&mut engine, Acceleration::None)?;
         let mut made = 0;
         while made < iterations && self.on_card.is_next(self.backend) {
-            match self.round_on_card(&mut engine, iterations - made, made == 0, chooser.as_mut()) {
+            match self.round_on_card(&mut engine, iterations - made, made == 0, chooser.as_mut(), 0.0) {
                 Ok(found) => made += found.iterations,
                 Err(error) => return self.card_failed(error, made).map(|()| made),
             }
@@ -279,13 +283,15 @@ impl Solver {
         let mut rounds = Rounds::default();
         let mut outcome = Ok(None);
         let mut is_first = true;
+        let near = course.options.tolerance.max(LEAST_MOVE);
         while self.on_card.is_next(self.backend) {
             let left = course.options.max_iterations - report.iterations;
             if left == 0 {
                 outcome = Ok(Some(Outcome::IterationLimit));
                 break;
             }
-            let found = match self.round_on_card(&mut engine, left, is_first, chooser.as_mut()) {
+            let found = match self.round_on_card(&mut engine, left, is_first, chooser.as_mut(), near * course.diagonal)
+            {
                 Ok(found) => found,
                 Err(error) => {
                     outcome = self.card_failed(error, report.iterations).map(|()| None);
@@ -316,8 +322,7 @@ impl Solver {
                 break;
             }
             // The finish is the processor's.
-            let is_near = report.largest_move < course.options.tolerance.max(LEAST_MOVE);
-            if is_near || found.is_stuck || rounds.are_idle(report) {
+            if found.is_turn && (report.largest_move < near || found.is_stuck || rounds.are_idle(report)) {
                 break;
             }
         }

@@ -137,13 +137,18 @@ fn types_without_kernels_and_forces_on_faces_are_the_processors_share() {
         let model = model("planar_quads", 400).unwrap();
         let mut solver = model.solver().unwrap();
         let points = solver.points().to_vec();
-        let surface = shapeop::problem::Reference::Polyline { points: vec![[0.0; 3], [1.0, 1.0, 1.0], [2.0, 1.0, 0.0]], closed: false };
+        let surface = shapeop::problem::Reference::Polyline {
+            points: vec![[0.0; 3], [1.0, 1.0, 1.0], [2.0, 1.0, 0.0]],
+            closed: false,
+        };
         solver.add_reference(&surface).unwrap();
         for point in [17, 133, 250] {
             solver.add_constraint("OnCurve", &[point], 1.0).unwrap();
         }
         let _ = points;
-        solver.add_force(Force::Pressure { faces: [[0, 1, 21, 20], [21, 22, 42, 41]].iter().collect(), pressure: 0.5 }).unwrap();
+        solver
+            .add_force(Force::Pressure { faces: [[0, 1, 21, 20], [21, 22, 42, 41]].iter().collect(), pressure: 0.5 })
+            .unwrap();
         solver.set_backend(backend).unwrap();
         solver.init().unwrap();
         let report = solved(&mut solver, &options(20, 0.0));

@@ -176,7 +176,7 @@ mod with_card {
             engine.begin_rows(&self.splitting.rows, &reaches);
             let mut goes_on = true;
             while *made < wanted && goes_on {
-                let found = engine.iterate(engine.suggested_count().min(wanted - *made), now, None)?;
+                let found = engine.iterate(wanted - *made, now, None, 0.0)?;
                 *made += found.iterations;
                 solver.points.copy_from_slice(&engine.current);
                 let sweeps = report.iterations + *made;
@@ -198,6 +198,83 @@ mod with_card {
             self.splitting.forget();
             self.card.0 = Some(on_card);
             Ok(goes_on)
+        }
+    }
+}
+
+#[cfg(all(test, feature = "gpu"))]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use glam::DVec3;
+
+    use super::Ahead;
+    use crate::problem::Objective;
+    use crate::solver::{Backend, BackendOptions, Report, Solver, backend_info};
+
+    /// Grids of 6 by 6 points with constraints of these types, hard and soft.
+    fn solver(hard: &[(&str, u32)], soft: &[(&str, u32)]) -> Solver {
+        let points: Vec<DVec3> = (0..36_u32)
+            .map(|i| {
+                let (x, y) = (f64::from(i % 6), f64::from(i / 6));
+                DVec3::new(x, y, 0.3 * (1.7 * x + 0.9 * y).sin() + 0.1 * f64::from(i * 7 % 5)) + DVec3::splat(50.0)
+            })
+            .collect();
+        let mut solver = Solver::new();
+        solver.set_points(&points).unwrap();
+        for (types, is_hard) in [(hard, true), (soft, false)] {
+            for (type_name, k) in types {
+                for corner in (0..29).filter(|i| i % 6 < 5).step_by(2) {
+                    let ids: Vec<u32> =
+                        [corner, corner + 1, corner + 7, corner + 6].into_iter().take(*k as usize).collect();
+                    let id = solver.add_constraint(type_name, &ids, 0.7).unwrap();
+                    solver.set_hard(&[id], is_hard).unwrap();
+                }
+            }
+        }
+        solver.set_objective(&Objective::default(), Default::default()).unwrap();
+        solver.set_backend(Backend::Gpu).unwrap();
+        solver.init().unwrap();
+        let lifted = solver.points()[14] + DVec3::Z;
+        solver.set_handle(14, lifted).unwrap();
+        solver
+    }
+
+    #[test]
+    fn sweeps_on_the_card_are_those_of_the_processor() {
+        if let Err(error) = backend_info(&BackendOptions::default()) {
+            eprintln!("LEFT OUT: {error}");
+            return;
+        }
+        let cases: [(&[(&str, u32)], &[(&str, u32)]); 6] = [
+            (&[("Plane", 4)], &[]),
+            (&[("Plane", 4)], &[("EdgeStrain", 2), ("Closeness", 1)]),
+            (&[("EdgeStrain", 2)], &[]),
+            (&[("Closeness", 1)], &[("Plane", 4)]),
+            (&[("Circle", 4), ("Laplacian", 4)], &[]),
+            (&[("EqualLengths", 4), ("Bending", 4)], &[("Rectangle", 4)]),
+        ];
+        for (hard, soft) in cases {
+            let mut solver = solver(hard, soft);
+            let mut explorer = std::mem::take(&mut solver.explorer);
+            let mut engine = explorer.prepare(&mut solver).unwrap();
+            // Neither begins at rest.
+            engine.splitting.plain_sweep();
+            let (points, rows) = (engine.splitting.points.clone(), engine.splitting.rows.clone());
+            (0..4).for_each(|_| engine.splitting.plain_sweep());
+            let expected = [engine.splitting.points.clone(), engine.splitting.rows.clone()];
+            engine.splitting.points.copy_from_slice(&points);
+            engine.splitting.rows.copy_from_slice(&rows);
+            let mut report = Report::empty();
+            let mut progress = |_: &crate::solver::Progress<'_>| ControlFlow::Continue(());
+            let Ahead::Swept(4) = engine.sweep_ahead(&mut solver, 4, 0.0, &mut report, &mut progress) else {
+                panic!("{hard:?}: {report:?}");
+            };
+            for (found, expected) in [&engine.splitting.points, &engine.splitting.rows].into_iter().zip(&expected) {
+                let apart = found.iter().zip(expected).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+                println!("{hard:?} {soft:?}: {apart:.1e}");
+                assert!(apart < 2e-5, "{hard:?} {soft:?}: {apart}");
+            }
         }
     }
 }

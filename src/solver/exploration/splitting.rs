@@ -226,6 +226,14 @@ impl Splitting {
         sweep
     }
 
+    /// One sweep without acceleration.
+    #[cfg(all(test, feature = "gpu"))]
+    pub(super) fn plain_sweep(&mut self) {
+        self.solve(false);
+        self.project(false);
+        self.rows.copy_from_slice(&self.next);
+    }
+
     /// The points for the rows in hand; returns the largest move.
     fn solve(&mut self, is_parallel: bool) -> f64 {
         let n = self.points.len();

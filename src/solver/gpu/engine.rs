@@ -28,8 +28,9 @@ use crate::linalg::symmetric::SymmetricMatrix;
 use crate::solver::acceleration::Chooser;
 use crate::solver::history::Combination;
 
-/// Iterations between read-backs at most.
-const MOST_ITERATIONS: u32 = 25;
+/// Iterations between *turns*, and so between read-backs at most. Where the time of an iteration asks for it, points are read back
+/// between turns as well; but whatever later iterations depend on changes at turns alone, so that no clock decides about bits.
+const TURN: u32 = 25;
 
 /// Seconds between read-backs, about: half of what is promised, as the time of an iteration is an estimate.
 const SECONDS: f64 = 0.25;
@@ -94,6 +95,8 @@ pub(in crate::solver) struct Engine {
     /// The components that nothing holds against translation, and the means that they keep.
     free: Vec<Vec<u32>>,
     means: Vec<DVec3>,
+    /// Iterations since [`Self::begin`].
+    made: u32,
     /// True once the right-hand side belongs to the points.
     is_projected: bool,
     /// What accelerated iterations remember; none before the first.
@@ -116,12 +119,21 @@ pub(in crate::solver) struct ReadBack {
     /// Iterations since the one before, and evaluations.
     pub(in crate::solver) iterations: u32,
     pub(in crate::solver) evaluations: u32,
+    /// True at a turn, and where accelerated iterations ended early: then the processor may go on.
+    pub(in crate::solver) is_turn: bool,
     /// True where acceleration finds nothing any more: energies differ by less than single precision tells.
     pub(in crate::solver) is_stuck: bool,
     /// In single precision but for the sum.
     pub(in crate::solver) energy: f64,
     /// The largest move of a point in the last iteration, in model units.
     pub(in crate::solver) largest_move: f64,
+}
+
+/// What is known of points: their energy, that of the linear terms at the last upload left out, and the largest move to them.
+#[derive(Clone, Copy)]
+struct Trial {
+    energy: f64,
+    largest_move: f64,
 }
 
 /// See the shaders.
@@ -210,6 +222,7 @@ impl Engine {
             constant_energy: 0.0,
             free: parts.free.clone(),
             means: Vec::new(),
+            made: 0,
             is_projected: false,
             history: None,
             energy: None,
@@ -243,6 +256,7 @@ impl Engine {
             self.current.extend_from_slice(points);
             self.upload_points();
         }
+        self.made = 0;
         self.means = self.free.iter().map(|points| mean(points, &self.current)).collect();
         self.upload_constants(now);
         self.transfer_seconds += started.elapsed().as_secs_f64();
@@ -258,12 +272,13 @@ impl Engine {
         self.host_pulls.is_some()
     }
 
-    /// Iterations that one call of [`Self::iterate`] should make, so that the next read-back is not too late.
-    pub(in crate::solver) fn suggested_count(&self) -> u32 {
-        if self.has_host() || self.seconds_per_iteration == 0.0 {
+    /// Iterations that one call of [`Self::iterate`] should make: to the next turn, unless that is too late.
+    fn suggested_count(&self) -> u32 {
+        if self.has_host() || self.made == 0 {
             return 1;
         }
-        ((SECONDS / self.seconds_per_iteration) as u32).clamp(1, MOST_ITERATIONS)
+        let in_time = if self.is_warm() { (SECONDS / self.seconds_per_iteration) as u32 } else { 1 };
+        in_time.clamp(1, TURN - self.made % TURN)
     }
 
     /// Has the following iterations accelerated, with so many pairs remembered; they begin with nothing to remember.
@@ -290,16 +305,17 @@ impl Engine {
         self.plain_in_a_row = 0;
     }
 
-    /// So many iterations, one where the processor has a share; accelerated where there is a `chooser`. [`Self::current`] then
-    /// has the points.
+    /// Some iterations, `most` at most; accelerated where there is a `chooser`, and then none after one whose largest move is
+    /// below `near`. [`Self::current`] then has the points.
     ///
     /// # Errors
     /// Status `BackendFailed`; [`Self::current`] is as it was.
     pub(in crate::solver) fn iterate(
         &mut self,
-        count: u32,
+        most: u32,
         now: Now<'_>,
         chooser: Option<&mut Chooser>,
+        near: f64,
     ) -> Result<ReadBack> {
         if self.has_host() {
             let started = Instant::now();
@@ -308,30 +324,33 @@ impl Engine {
             self.transfer_seconds += started.elapsed().as_secs_f64();
         }
         let started = Instant::now();
+        let count = self.suggested_count().min(most);
         if !self.is_projected {
             self.project(now);
         }
-        let evaluations = match chooser {
-            Some(chooser) => self.accelerated_iterations(count, chooser)?,
+        let [iterations, evaluations] = match chooser {
+            Some(chooser) => self.accelerated_iterations(count, chooser, near)?,
             None => {
                 self.plain_iterations(count);
-                count
+                [count; 2]
             }
         };
         self.card.wait()?;
         let seconds = started.elapsed().as_secs_f64();
         self.gpu_seconds += seconds;
-        self.seconds_per_iteration = seconds / f64::from(count.max(1));
+        self.seconds_per_iteration = seconds / f64::from(iterations.max(1));
+        self.made += iterations;
+        let is_turn = self.made == 1 || self.made.is_multiple_of(TURN);
         let started = Instant::now();
-        let mut found = self.read_back(count)?;
-        found.evaluations = evaluations;
-        if self.base.iter().zip(&self.current).any(|(base, point)| self.has_gone_far(*base, *point)) {
+        let (energy, largest_move) = self.read_back(is_turn)?;
+        if is_turn && self.base.iter().zip(&self.current).any(|(base, point)| self.has_gone_far(*base, *point)) {
             self.upload_points();
             self.upload_constants(now);
             self.forget();
         }
         self.transfer_seconds += started.elapsed().as_secs_f64();
-        Ok(found)
+        let is_stuck = self.plain_in_a_row >= MOST_PLAIN;
+        Ok(ReadBack { iterations, evaluations, energy, largest_move, is_turn: is_turn || iterations < count, is_stuck })
     }
 
     /// The linear solve.
@@ -350,24 +369,28 @@ impl Engine {
         self.energy = None;
     }
 
-    /// Returns the number of evaluations.
-    fn accelerated_iterations(&mut self, count: u32, chooser: &mut Chooser) -> Result<u32> {
+    /// Returns the numbers of iterations and of evaluations.
+    fn accelerated_iterations(&mut self, count: u32, chooser: &mut Chooser, near: f64) -> Result<[u32; 2]> {
         let mut energy = match self.energy {
             Some(energy) => energy,
-            None => self.read_energy()?,
+            None => self.read_trial()?.energy,
         };
-        let mut evaluations = 0;
-        for _ in 0..count {
+        let (mut iterations, mut evaluations) = (0, 0);
+        while iterations < count {
             let (found, tried) = self.accelerated_iteration(energy, chooser)?;
-            energy = found;
+            energy = found.energy;
             evaluations += tried;
+            iterations += 1;
+            if found.largest_move < near || self.plain_in_a_row >= MOST_PLAIN {
+                break;
+            }
         }
         self.energy = Some(energy);
-        Ok(evaluations)
+        Ok([iterations, evaluations])
     }
 
-    /// From points of `energy` to those of the energy that is returned, with the number of evaluations.
-    fn accelerated_iteration(&mut self, energy: f64, chooser: &mut Chooser) -> Result<(f64, u32)> {
+    /// One iteration from points of `energy`; returns the number of evaluations, too.
+    fn accelerated_iteration(&mut self, energy: f64, chooser: &mut Chooser) -> Result<(Trial, u32)> {
         let Some(mut history) = self.history.take() else { return Err(super::internal("there is no history")) };
         self.card.submit(self.solving());
         history.push(&self.card);
@@ -381,7 +404,7 @@ impl Engine {
             while let Some(length) = chooser.next_length() {
                 evaluations += 1;
                 let found = self.try_length(&history, length)?;
-                if chooser.accepts(found) {
+                if chooser.accepts(found.energy) {
                     accepted = Some(found);
                     break;
                 }
@@ -400,16 +423,28 @@ impl Engine {
         Ok((found, evaluations))
     }
 
-    /// The energy so far along the direction from the last iterate, where the points then are.
-    fn try_length(&self, history: &History, length: f64) -> Result<f64> {
+    /// Moves the points so far along the direction from the last iterate.
+    fn try_length(&self, history: &History, length: f64) -> Result<Trial> {
         history.set_length(&self.card, length);
         self.card.submit([&history.trial].into_iter().chain(&self.projecting));
-        self.read_energy()
+        self.read_trial()
     }
 
-    fn read_energy(&self) -> Result<f64> {
-        let read: Vec<Vec<f32>> = self.card.read(&[(&self.energies, self.group_count)])?;
-        Ok(self.frame.size * self.frame.size * sum(&read[0]))
+    /// What is known at the points that were projected last.
+    fn read_trial(&self) -> Result<Trial> {
+        let read: Vec<Vec<f32>> = self.card.read(&[(&self.energies, self.group_count), self.moves_to_read()])?;
+        Ok(self.trial(&read[0], &read[1]))
+    }
+
+    fn moves_to_read(&self) -> (&wgpu::Buffer, usize) {
+        (&self.moves, self.point_count.div_ceil(GROUP as usize))
+    }
+
+    fn trial(&self, energies: &[f32], moves: &[f32]) -> Trial {
+        let size = self.frame.size;
+        let energy: f64 = energies.iter().map(|energy| f64::from(*energy)).sum();
+        let largest = f64::from(moves.iter().copied().fold(0.0, f32::max)).sqrt();
+        Trial { energy: size * size * energy, largest_move: size * largest }
     }
 
     /// From points to the right-hand side; where the processor has a share, from [`Self::current`].
@@ -464,12 +499,12 @@ impl Engine {
         (self.is_projected, self.energy) = (false, None);
     }
 
-    fn read_back(&mut self, iterations: u32) -> Result<ReadBack> {
-        let (n, groups) = (self.current.len(), self.group_count);
+    /// Takes over the points; returns their energy and the largest move.
+    fn read_back(&mut self, is_turn: bool) -> Result<(f64, f64)> {
         let buffers = [
-            (&self.points.shift, 4 * n),
-            (&self.energies, groups),
-            (&self.moves, n.div_ceil(GROUP as usize)),
+            (&self.points.shift, 4 * self.point_count),
+            (&self.energies, self.group_count),
+            self.moves_to_read(),
             (&self.gradients.progress, 8),
         ];
         let read: Vec<Vec<f32>> = self.card.read(&buffers)?;
@@ -479,7 +514,8 @@ impl Engine {
         let shift: &[Four] = bytemuck::cast_slice(shift);
         let moved = shift.iter().zip(&self.base).map(|(shift, base)| self.frame.joined(*base, *shift));
         let mut new: Vec<DVec3> = moved.collect();
-        if !new.iter().all(|point| point.is_finite()) {
+        let found = self.trial(energies, moves);
+        if !new.iter().all(|point| point.is_finite()) || !found.energy.is_finite() {
             let reason = "the numbers of this model leave the range of single precision";
             return Err(Error::new(Status::BackendFailed, reason));
         }
@@ -489,22 +525,11 @@ impl Engine {
             points.iter().for_each(|point| new[*point as usize] += drift);
         }
         self.current = new;
-        self.steps = steps_for(self.steps, progress);
-        let size = self.frame.size;
-        let energy = size * size * sum(energies);
-        let largest = moves.iter().copied().fold(0.0, f32::max);
-        Ok(ReadBack {
-            iterations,
-            evaluations: iterations,
-            is_stuck: self.plain_in_a_row >= MOST_PLAIN,
-            energy: self.constant_energy + energy,
-            largest_move: size * f64::from(largest).sqrt(),
-        })
+        if is_turn {
+            self.steps = steps_for(self.steps, progress);
+        }
+        Ok((self.constant_energy + found.energy, found.largest_move))
     }
-}
-
-fn sum(energies: &[f32]) -> f64 {
-    energies.iter().map(|energy| f64::from(*energy)).sum()
 }
 
 fn mean(points: &[u32], all: &[DVec3]) -> DVec3 {

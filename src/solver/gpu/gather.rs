@@ -43,12 +43,7 @@ pub(super) fn runs(
 }
 
 /// The results of one page that belong to each point, point after point.
-fn lists_of(
-    constraints: &ConstraintSet,
-    step: &LocalStep,
-    page: usize,
-    point_count: usize,
-) -> (Vec<usize>, Vec<u32>) {
+fn lists_of(constraints: &ConstraintSet, step: &LocalStep, page: usize, point_count: usize) -> (Vec<usize>, Vec<u32>) {
     let each = |visit: &mut dyn FnMut(u32, usize)| {
         for bucket in step.buckets.iter().filter(|bucket| bucket.page == page) {
             let (batch, count) = (constraints.batch(bucket.batch), bucket.slots.len());

@@ -249,8 +249,7 @@ impl Making<'_, '_> {
             batch.indices(slot as usize).iter().enumerate().for_each(|(j, point)| indices[j * count + i] = *point);
         }
         let squared_unit = group.unit * group.unit;
-        let stiffness =
-            by_structure(1, &|i, _| parts.stiffness[bucket.batch][bucket.slots[i] as usize] / squared_unit);
+        let stiffness = by_structure(1, &|i, _| parts.stiffness[bucket.batch][bucket.slots[i] as usize] / squared_unit);
         let own_first: Vec<u32> = bucket.slots.iter().map(|slot| own_batch.indices(*slot as usize)[0]).collect();
         let is_fixed = batch.kernel() == Kernel::Constant;
         let uniform = card.uniform(&Numbers {
@@ -274,13 +273,11 @@ impl Making<'_, '_> {
         let (uniform_access, read, write) = (Access::Uniform, Access::Read, Access::Write);
         let accesses = [uniform_access, read, read, read, read, read, read, write, write];
         let kernel = card.kernel("hold", &[HARD, ROWS, include_str!("shaders/hold.wgsl")], &accesses)?;
-        let buffers =
-            [&uniform, &points.base, &points.shift, &indices, &numbers, &stiffness, held, gap, pulls];
+        let buffers = [&uniform, &points.base, &points.shift, &indices, &numbers, &stiffness, held, gap, pulls];
         holding.push(card.run_of(&kernel, &buffers, count));
 
         let kernel = card.kernel("place", &[HARD, ROWS, include_str!("shaders/place.wgsl")], &accesses)?;
-        let buffers =
-            [&uniform, &points.base, &points.shift, &indices, &numbers, held, &own_first, gap, &own.shift];
+        let buffers = [&uniform, &points.base, &points.shift, &indices, &numbers, held, &own_first, gap, &own.shift];
         placing.push(card.run_of(&kernel, &buffers, count));
 
         if is_fixed {

@@ -67,9 +67,11 @@ impl History {
         let (uniform, read, write) = (Access::Uniform, Access::Read, Access::Write);
         let accesses = [uniform, read, read, read, read, write, write, write];
         let push = card.kernel("push", &[include_str!("shaders/push.wgsl")], &accesses)?;
-        let product = card.kernel("products", &[include_str!("shaders/products.wgsl")], &[uniform, read, read, write])?;
+        let product =
+            card.kernel("products", &[include_str!("shaders/products.wgsl")], &[uniform, read, read, write])?;
         let direct = card.kernel("direction", &[include_str!("shaders/direction.wgsl")], &[uniform, read, write])?;
-        let trial = card.kernel("trial", &[include_str!("shaders/trial.wgsl")], &[uniform, read, read, write, write])?;
+        let trial =
+            card.kernel("trial", &[include_str!("shaders/trial.wgsl")], &[uniform, read, read, write, write])?;
         let room = |name, vectors: usize| card.room(name, vector_bytes(vectors * count));
         let (last, direction) = (room("the last iterate", 4)?, room("the direction", 1)?);
         let shares = card.room("the shares of products", vector_bytes((capacity + 1) * SHARES))?;
