@@ -116,6 +116,7 @@ fn buckets(
             let first_slot = slots.first().map_or(0, |slot| *slot as usize);
             let mut numbers = Vec::new();
             batch.kernel_numbers(first_slot, 1.0, &mut numbers);
+            numbers.extend(batch.kernel_place(first_slot).iter().flat_map(|_| [0.0; 6]));
             // Results are four numbers, all else is one.
             let widest = results.max(points.div_ceil(4)).max(numbers.len().div_ceil(4)).max(1);
             for part in slots.chunks((most_results / widest).max(1)) {
@@ -179,6 +180,9 @@ impl Bucket {
             batch.indices(slot as usize).iter().enumerate().for_each(|(j, point)| indices[j * count + i] = *point);
             own.clear();
             batch.kernel_numbers(slot as usize, frame.size, &mut own);
+            if let Some(place) = batch.kernel_place(slot as usize) {
+                own.extend(frame.split(place).iter().flat_map(|part| &part[..3]).map(|number| f64::from(*number)));
+            }
             numbers.resize(own.len() * count, 0.0);
             own.iter().enumerate().for_each(|(n, number)| numbers[n * count + i] = *number as f32);
         }

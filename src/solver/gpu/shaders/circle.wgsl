@@ -22,15 +22,16 @@ fn own_place(i: u32, j: u32, found: Principal) -> vec3f {
 fn circle_of(i: u32, found: Principal) -> Circle {
     // Σ u², Σ v², Σ u v.
     var squares = vec3f(0.0);
+    // Σ (‖q‖² − tr S / k) q: the second part adds nothing but takes off what cancels.
     var moment = vec2f(0.0);
+    let spread = found.spread.y + found.spread.z;
     for (var j = 0u; j < batch.points; j++) {
         let q = own_place(i, j, found).zy;
         squares += q.xyx * q.xyy;
-        moment += q * dot(q, q);
+        moment += q * (dot(q, q) - spread);
     }
     let sum = squares.x + squares.y;
     let determinant = squares.x * squares.y - squares.z * squares.z;
-    let spread = sum / f32(batch.points);
     if !(determinant > STRAIGHT * sum * sum) {
         return Circle(vec2f(0.0), spread, true);
     }

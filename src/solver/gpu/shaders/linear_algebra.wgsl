@@ -247,12 +247,13 @@ fn scatter(i: u32, mean: vec3f, frame: mat3x3f) -> Scatter {
     return sum;
 }
 
-// Where the points lie: their mean, the square root of the sum of their squared distances from it (0 where they coincide), and
-// the axes of least, middle and greatest scatter.
+// Where the points lie: their mean, the square root of the sum of their squared distances from it (0 where they coincide), the
+// axes of least, middle and greatest scatter, and the means of the squared coordinates along them, over the size squared.
 struct Principal {
     mean: vec3f,
     size: f32,
     axes: mat3x3f,
+    spread: vec3f,
 }
 
 // A scatter in single precision says nothing of extents below some 3e-4 of the greatest. Along the axes that it has, coordinates
@@ -262,14 +263,16 @@ fn principal(i: u32) -> Principal {
     let first = scatter(i, mean, IDENTITY);
     let squared = first.diagonal.x + first.diagonal.y + first.diagonal.z;
     if !(squared > COINCIDENT_SQUARED) {
-        return Principal(mean, 0.0, IDENTITY);
+        return Principal(mean, 0.0, IDENTITY, vec3f(0.0));
     }
     let frame = symmetric_eigen(first.diagonal, first.off).vectors;
     let second = scatter(i, mean, frame);
-    let axes = frame * symmetric_eigen(second.diagonal, second.off).vectors;
+    let turned = symmetric_eigen(second.diagonal, second.off);
+    let axes = frame * turned.vectors;
     let z = normalize(axes[2]);
     let y = unit_beside(axes[1], z);
-    return Principal(mean, sqrt(squared), mat3x3f(cross(y, z), y, z));
+    let spread = turned.values / (squared * f32(batch.points));
+    return Principal(mean, sqrt(squared), mat3x3f(cross(y, z), y, z), spread);
 }
 
 // Four points about their mean are half the sums of three vectors with signs: + + +, + − −, − + −, − − +. The scatter of the

@@ -20,14 +20,15 @@ fn own_place(i: u32, j: u32, found: Principal) -> vec3f {
 fn sphere_of(i: u32, found: Principal) -> Sphere {
     var squares = vec3f(0.0);
     var off = vec3f(0.0);
+    // Σ (‖y‖² − tr S / k) y: the second part adds nothing but takes off what cancels.
     var moment = vec3f(0.0);
+    let spread = found.spread.x + found.spread.y + found.spread.z;
     for (var j = 0u; j < batch.points; j++) {
         let y = own_place(i, j, found);
         squares += y * y;
         off += y.yxx * y.zzy;
-        moment += y * dot(y, y);
+        moment += y * (dot(y, y) - spread);
     }
-    let spread = (squares.x + squares.y + squares.z) / f32(batch.points);
     let middle_of_greatest = off.x / squares.z;
     let least_of_greatest = off.y / squares.z;
     let middle = squares.y - middle_of_greatest * off.x;
