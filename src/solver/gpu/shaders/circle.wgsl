@@ -3,8 +3,9 @@
 // Of flat arcs the center is far away, and distances from it have few digits of the points' extent. With `w = tr S / k − ‖q‖² + 2 q·c`,
 // which is `r² − d²` without what cancels, a point at the distance `d` from the center moves by `(q − c) w / (d (d + r))`.
 
-// As on the processor: points with a lesser ratio of `det S` to `(tr S)²` are on a line.
-const STRAIGHT = 1e-12;
+// Points with a lesser ratio of `det S` to `(tr S)²` are within 2e-6 of their size from a line. They are put on it: their places
+// beside it have hardly a digit in single precision.
+const STRAIGHT = 4e-12;
 
 struct Circle {
     // In units of `size`, along the axes of greatest and middle scatter.
@@ -42,7 +43,7 @@ fn circle_of(i: u32, found: Principal) -> Circle {
 // How a point at `y` moves, along the axes and in units of the size.
 fn move_of(y: vec3f, circle: Circle) -> vec3f {
     if circle.is_straight {
-        return vec3f(-y.x, 0.0, 0.0);
+        return vec3f(-y.x, -y.y, 0.0);
     }
     let q = y.zy;
     let from_center = q - circle.center;

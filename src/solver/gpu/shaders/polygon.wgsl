@@ -26,29 +26,21 @@ fn corner_turn(j: u32, k: u32) -> vec2f {
 
 // The axes of the nearest regular polygon: corner `j` is in the direction `cos a + sin b`, and `‖a‖ = ‖b‖` is `k` times the radius.
 struct Polygon {
+    // Of the points; left out where there are four.
+    mean: vec3f,
     a: vec3f,
     b: vec3f,
     normal: vec3f,
 }
 
-// Where the points span no plane, the one of the normal nearest to `rest_normal` is taken.
-fn nearest_polygon(i: u32, mean: vec3f, rest_normal: vec3f) -> Polygon {
-    var p = vec3f(0.0);
-    var q = vec3f(0.0);
-    for (var j = 0u; j < batch.points; j++) {
-        let turn = corner_turn(j, batch.points);
-        let x = at(i, j) - mean;
-        p += turn.x * x;
-        q += turn.y * x;
-    }
+// Of moments `p` and `q` that span no plane, the one of the normal nearest to `rest_normal` is taken.
+fn polygon_along(p: vec3f, q: vec3f, mean: vec3f, rest_normal: vec3f) -> Polygon {
     let squared = dot(p, p) + dot(q, q);
     if !(squared > COINCIDENT_SQUARED) {
-        return Polygon(vec3f(0.0), vec3f(0.0), vec3f(0.0, 0.0, 1.0));
+        return Polygon(mean, vec3f(0.0), vec3f(0.0), vec3f(0.0, 0.0, 1.0));
     }
-    let size = sqrt(squared);
-    p /= size;
-    q /= size;
-    var normal = cross(p, q);
+    let per_size = inverseSqrt(squared);
+    var normal = cross(p * per_size, q * per_size);
     if length(normal) > COLLINEAR {
         normal = normalize(normal);
     } else {
@@ -63,14 +55,38 @@ fn nearest_polygon(i: u32, mean: vec3f, rest_normal: vec3f) -> Polygon {
     var a = p + cross(q, normal);
     // Of thin shapes the normal is not quite orthogonal to `p`, and the polygon must be regular all the same.
     a -= dot(a, normal) * normal;
-    return Polygon(size * a, size * cross(normal, a), normal);
+    return Polygon(mean, a, cross(normal, a), normal);
+}
+
+fn nearest_polygon(i: u32, rest_normal: vec3f) -> Polygon {
+    if batch.points == 4u {
+        // The diagonals.
+        let vectors = four_points(i);
+        return polygon_along(vectors[0] + vectors[2], vectors[0] - vectors[2], vec3f(0.0), rest_normal);
+    }
+    let mean = centre(i);
+    var p = vec3f(0.0);
+    var q = vec3f(0.0);
+    for (var j = 0u; j < batch.points; j++) {
+        let turn = corner_turn(j, batch.points);
+        let x = at(i, j) - mean;
+        p += turn.x * x;
+        q += turn.y * x;
+    }
+    return polygon_along(p, q, mean, rest_normal);
 }
 
 // Puts the residuals of the corners `factor (cos a + sin b)`.
-fn put_polygon(i: u32, mean: vec3f, polygon: Polygon, factor: f32) {
+fn put_polygon(i: u32, polygon: Polygon, factor: f32) {
+    let a = factor * polygon.a;
+    let b = factor * polygon.b;
+    if batch.points == 4u {
+        let vectors = four_points(i);
+        put_four(i, mat3x3f(a + b - vectors[0], -vectors[1], a - b - vectors[2]));
+        return;
+    }
     for (var j = 0u; j < batch.points; j++) {
         let turn = corner_turn(j, batch.points);
-        let corner = factor * (turn.x * polygon.a + turn.y * polygon.b);
-        put_centred(i, j, corner - (at(i, j) - mean), vec3f(0.0));
+        put_centred(i, j, turn.x * a + turn.y * b - (at(i, j) - polygon.mean), vec3f(0.0));
     }
 }
