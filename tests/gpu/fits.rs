@@ -2,7 +2,9 @@
 //!
 //! Where the nearest configuration is not unique, or points moved by round-off would have another, the two backends may find
 //! different ones. The card's must then be feasible, by the processor's measure of violation, and as near to the points as the
-//! processor's. How many are judged so is printed, and bounded for random points.
+//! processor's. Types whose projection is not the nearest have no nearness to hold to where round-off matters (the circle through
+//! nearly straight points in zigzag is such a place): there the card's answer must be no farther from the processor's than that
+//! moves when the points do. How many are judged so is printed, and bounded for random points.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +16,7 @@ use crate::has_adapter;
 use crate::kernels::{COUNTS, Compared, NEAR, Random, Sample, compare, diameter, solver_of};
 
 /// Most that random constraints, of points with no symmetry, may need the second judgement.
-const MOST_UNSURE: f64 = 0.05;
+const MOST_UNSURE: f64 = 0.01;
 
 /// Of the constraint's diameter: what points may be moved by round-off, a few units in the last place of single precision.
 const ROUND_OFF: f64 = 5e-7;
@@ -27,6 +29,20 @@ const GENERIC: usize = 4;
 
 /// Kinds of points, of which [`shape`] makes one.
 const KINDS: usize = 21;
+
+/// The types that take four points and no scalars, or by default their shape at rest.
+const FITS: [&str; 10] = [
+    "Plane",
+    "Line",
+    "Circle",
+    "Sphere",
+    "Rectangle",
+    "Parallelogram",
+    "Similarity",
+    "Rigid",
+    "RegularPolygon",
+    "Orientation",
+];
 
 /// `k` points of a kind, about 1 apart.
 fn shape(random: &mut Random, k: usize, kind: usize) -> Vec<DVec3> {
@@ -131,7 +147,7 @@ fn judge(type_name: &str, samples: &[Sample], extent: impl Fn(&Compared<'_>) -> 
         far.len()
     );
     assert_within_round_off(type_name, &far);
-    let most = MOST_UNSURE * (count * GENERIC / KINDS).max(20) as f64;
+    let most = (MOST_UNSURE * (count * GENERIC / KINDS) as f64).max(1.0);
     assert!(generic as f64 <= most, "{type_name}: {generic} of {count}");
 }
 
@@ -167,23 +183,25 @@ fn assert_within_round_off(type_name: &str, far: &[Unsure]) {
     }
     for (one, most) in far.iter().zip(most) {
         let Unsure { id, size, difference, .. } = one;
-        if *difference > most {
-            println!("BAD {type_name} {id} of kind {}: {difference} > {most} of {size}", id % KINDS);
-        }
-        //assert!(*difference <= most, "{type_name} {id} of kind {}: {difference} > {most} of {size}", id % KINDS);
+        assert!(*difference <= most, "{type_name} {id} of kind {}: {difference} > {most} of {size}", id % KINDS);
     }
 }
 
-/// Judges a type without scalars on points of these numbers.
+/// Constraints without scalars, on points of these numbers.
+fn samples(random: &mut Random, count: usize, point_counts: &[usize]) -> Vec<Sample> {
+    let sample = |id: usize| {
+        let k = point_counts[(id / KINDS) % point_counts.len()];
+        let rest = (id % 2 == 0).then(|| placed(random, k, id / 3 % KINDS));
+        Sample { points: placed(random, k, id % KINDS), scalars: None, rest }
+    };
+    (0..count).map(sample).collect()
+}
+
+/// Judges a type without scalars.
 fn judge_points(type_name: &str, seed: u64, point_counts: &[usize]) {
     let mut random = Random::new(seed);
     for count in COUNTS {
-        let sample = |id: usize| {
-            let k = point_counts[(id / KINDS) % point_counts.len()];
-            let rest = (id % 2 == 0).then(|| placed(&mut random, k, id / 3 % KINDS));
-            Sample { points: placed(&mut random, k, id % KINDS), scalars: None, rest }
-        };
-        judge(type_name, &(0..count).map(sample).collect::<Vec<_>>(), |_| 0.0);
+        judge(type_name, &samples(&mut random, count, point_counts), |_| 0.0);
     }
 }
 
@@ -268,15 +286,15 @@ fn templates_and_points(random: &mut Random, id: usize, scaled: bool) -> Sample 
     let kind = if id % KINDS < GENERIC { [0, 9, 12, 7][id % GENERIC] } else { (id / 5) % KINDS };
     let unit = random.size();
     let template_count = [1, 1, 2, 3][random.below(4)];
-    // Regular polygons have the closed form only where they are alone.
     let templates: Vec<Vec<DVec3>> = (0..template_count)
         .map(|_| {
-            let (size, place, turn) = (unit * random.within(0.5, 2.0), 1e3 * random.vector(), turn(random));
+            let (size, turn) = (unit * random.within(0.5, 2.0), turn(random));
+            let place = [0.0, 1e3][random.below(2)] * random.vector();
             shape(random, k, kind).into_iter().map(|point| place + size * (turn * point)).collect()
         })
         .collect();
     let points = if id / KINDS % 2 == 0 {
-        let scale = if scaled { random.size() } else { 1.0 };
+        let scale = if scaled { random.size() / unit } else { 1.0 };
         let own = &templates[random.below(template_count)];
         let (place, turn, shift, noise) =
             (1e3 * random.vector(), turn(random), random.below(k), [0.0, 1e-8, 0.3][id % 3]);
@@ -284,9 +302,9 @@ fn templates_and_points(random: &mut Random, id: usize, scaled: bool) -> Sample 
         let order = |j: usize| if is_mirrored { (shift + k - j) % k } else { (shift + j) % k };
         (0..k).map(|j| place + scale * (turn * (own[order(j)] - own[0]) + noise * unit * random.vector())).collect()
     } else {
-        let (size, place, turn) = (if scaled { 1.0 } else { unit / 1e3 }, 1e3 * random.vector(), turn(random));
-        let points = placed(random, k, id % KINDS);
-        points.iter().map(|point| place + size * (turn * (*point - points[0]))).collect()
+        let size = if scaled { random.size() } else { unit * random.within(0.1, 3.0) };
+        let (place, turn) = (1e3 * random.vector(), turn(random));
+        shape(random, k, id % KINDS).into_iter().map(|point| place + size * (turn * point)).collect()
     };
     let scalars = templates.iter().flatten().flat_map(|point| point.to_array()).collect();
     if id % 9 == 0 {
@@ -322,20 +340,8 @@ fn points_that_are_named_twice() {
         return;
     }
     let mut random = Random::new(22);
-    let names = [
-        "Plane",
-        "Line",
-        "Circle",
-        "Sphere",
-        "Rectangle",
-        "Parallelogram",
-        "Similarity",
-        "Rigid",
-        "RegularPolygon",
-        "Orientation",
-    ];
     let lists: [&[u32]; 5] = [&[0, 0, 1, 2], &[0, 1, 0, 2], &[3, 4, 5, 5], &[2, 2, 2, 2], &[1, 4, 1, 1]];
-    for name in names {
+    for name in FITS {
         let mut solver = Solver::new();
         let rest: Vec<DVec3> = (0..6).map(|_| random.vector()).collect();
         solver.set_points(&rest).unwrap();
@@ -353,5 +359,31 @@ fn points_that_are_named_twice() {
             let answer = Sample { points: gpu.clone(), scalars: None, rest: None };
             assert!(solver_of(name, &[answer]).violations()[0] <= NEAR, "{name} {list:?}: {gpu:?}");
         }
+    }
+}
+
+#[test]
+fn a_thousand_points_at_once() {
+    let mut random = Random::new(23);
+    for name in ["Plane", "Line", "Circle", "Sphere", "Orientation", "RegularPolygon"] {
+        judge(name, &samples(&mut random, 3 * KINDS, &[1000]), |_| 0.0);
+    }
+}
+
+#[test]
+fn tiny_constraints_are_projected_within_their_size() {
+    let mut random = Random::new(24);
+    for name in FITS {
+        let mut sample = |id: usize| {
+            let (size, place) = (10_f64.powf(random.within(-16.0, 3.0)), 1e3 * random.vector());
+            let own = shape(&mut random, 4, id % KINDS);
+            Sample { points: own.into_iter().map(|point| place + size * point).collect(), scalars: None, rest: None }
+        };
+        // Finite they are by `compare`.
+        compare(name, &(0..50 * KINDS).map(&mut sample).collect::<Vec<_>>(), |id, found| {
+            // Points are known to some 13 digits of the model's size.
+            let most = 4.0 * diameter(&found.sample.points) + 1e-10;
+            assert!(found.gpu.iter().all(|target| target.length() <= most), "{name} {id}: {:?} of {most}", found.gpu);
+        });
     }
 }

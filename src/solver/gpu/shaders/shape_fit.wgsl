@@ -40,12 +40,22 @@ fn covariance(i: u32, mean: vec3f, u: mat3x3f, v: mat3x3f, shape: u32, shift: u3
 
 // A bound on the trace that the best rotation reaches: see `trace_bound` in shape_fit.rs.
 fn trace_bound(h: mat3x3f) -> f32 {
-    let a = cross(h[0], h[1]);
-    let b = cross(h[1], h[2]);
-    let c = cross(h[2], h[0]);
+    let most = max(max(abs(h[0]), abs(h[1])), abs(h[2]));
+    let scale = max(most.x, max(most.y, most.z));
+    if !(scale * scale > COINCIDENT_SQUARED) {
+        // The sum of the entries is a bound too.
+        return 9.0 * scale;
+    }
+    // Products of four tiny entries would leave the range of single precision.
+    let x = h[0] / scale;
+    let y = h[1] / scale;
+    let z = h[2] / scale;
+    let a = cross(x, y);
+    let b = cross(y, z);
+    let c = cross(z, x);
     let cofactors = sqrt(dot(a, a) + dot(b, b) + dot(c, c));
-    let squared = dot(h[0], h[0]) + dot(h[1], h[1]) + dot(h[2], h[2]);
-    return sqrt(squared + 2.0 * sqrt(3.0) * cofactors) * (1.0 + TRACE_DIGITS);
+    let squared = dot(x, x) + dot(y, y) + dot(z, z);
+    return scale * sqrt(squared + 2.0 * sqrt(3.0) * cofactors) * (1.0 + TRACE_DIGITS);
 }
 
 // By how much the squared distance from a template of `size` is less than that from a point, up to a factor and a power; it grows with the trace.
