@@ -1,10 +1,11 @@
 //! Kernels of types that fit planes, lines, circles and shapes to their points.
 //!
-//! Where the nearest configuration is not unique, or points moved by round-off would have another, the two backends may find
-//! different ones. The card's must then be feasible, by the processor's measure of violation, and as near to the points as the
-//! processor's. Types whose projection is not the nearest have no nearness to hold to where round-off matters (the circle through
-//! nearly straight points in zigzag is such a place): there the card's answer must be no farther from the processor's than that
-//! moves when the points do. How many are judged so is printed, and bounded for random points.
+//! Where the nearest configuration is not unique, or points moved by round-off would have another, the two backends may
+//! find different ones. The card's must then be feasible, by the processor's measure of violation, and as near to the
+//! points as the processor's. Types whose projection is not the nearest have no nearness to hold to where round-off
+//! matters (the circle through nearly straight points in zigzag is such a place): there the card's answer must be no
+//! farther from the processor's than that moves when the points do. How many are judged so is printed, and bounded for
+//! random points.
 
 use std::f64::consts::TAU;
 
@@ -18,8 +19,12 @@ use crate::kernels::{COUNTS, Compared, NEAR, Random, Sample, compare, diameter, 
 /// Most that random constraints, of points with no symmetry, may need the second judgement.
 const MOST_UNSURE: f64 = 0.01;
 
-/// Of the constraint's diameter: what points may be moved by round-off, a few units in the last place of single precision.
+/// Of the constraint's diameter: what points may be moved by round-off, a few units in the last place of single
+/// precision.
 const ROUND_OFF: f64 = 5e-7;
+
+/// How well the card knows places: 14 digits of the model's size, some 6e3 here.
+const KNOWN: f64 = 1e-10;
 
 /// How often points are moved to see how far answers go.
 const MOVES: usize = 8;
@@ -28,7 +33,7 @@ const MOVES: usize = 8;
 const GENERIC: usize = 4;
 
 /// Kinds of points, of which [`shape`] makes one.
-const KINDS: usize = 21;
+const KINDS: usize = 22;
 
 /// The types that take four points and no scalars, or by default their shape at rest.
 const FITS: [&str; 10] = [
@@ -75,8 +80,9 @@ fn shape(random: &mut Random, k: usize, kind: usize) -> Vec<DVec3> {
         // Arcs and caps, short ones too.
         17 => all(&|j| corner(t[j] * tiny.powf(0.3)) / tiny.powf(0.3)),
         18 => all(&|j| (DVec3::new(jitter[j].x, jitter[j].y, 1.0 / tiny.powf(0.3))).normalize() / tiny.powf(0.3)),
-        // Parallelograms, and rectangles where all but two sides are of no length.
+        // Parallelograms and rectangles, where there are more than four points in several turns, and the ends of axes.
         19 => all(&|j| [DVec3::ZERO, a, a + b, b][j % 4]),
+        20 => all(&|j| [DVec3::ZERO, DVec3::X, DVec3::X + t[0] * DVec3::Y, t[0] * DVec3::Y][j % 4]),
         _ => all(&|j| [DVec3::X, DVec3::Y, -DVec3::X, -DVec3::Y, DVec3::Z, -DVec3::Z][j % 6]),
     }
 }
@@ -113,14 +119,15 @@ struct Unsure {
     answer: Sample,
 }
 
-/// Compares the samples, whose kinds are their numbers modulo [`KINDS`]; `extent` is what else is as large as a constraint.
+/// Compares the samples, whose kinds are their numbers modulo [`KINDS`]; `extent` is what else is as large as a
+/// constraint.
 fn judge(type_name: &str, samples: &[Sample], extent: impl Fn(&Compared<'_>) -> f64) {
     if !has_adapter() {
         return;
     }
     let (mut unsure, mut worst) = (Vec::new(), 0.0_f64);
     compare(type_name, samples, |id, found| {
-        let size = diameter(&found.sample.points).max(extent(found));
+        let size = diameter(&found.sample.points).max(extent(found)).max(KNOWN / NEAR);
         let difference = found.difference();
         if difference <= NEAR * size {
             worst = worst.max(difference / size.max(f64::MIN_POSITIVE));
@@ -160,8 +167,8 @@ fn assert_feasible(type_name: &str, unsure: &[Unsure]) {
     }
 }
 
-/// The card's answers are no farther from the processor's than those move with the points. Only types of which the nearest answer is
-/// not promised: of nearest answers the distance hardly changes.
+/// The card's answers are no farther from the processor's than those move with the points. Only types of which the
+/// nearest answer is not promised: of nearest answers the distance hardly changes.
 fn assert_within_round_off(type_name: &str, far: &[Unsure]) {
     let promise = types().find(|info| info.name == type_name).unwrap().projection;
     assert!(far.is_empty() || promise == Projection::Feasible, "{type_name}: {} answers are too far", far.len());
@@ -273,14 +280,14 @@ fn points_on_given_planes_and_lines() {
         };
         compare(name, &(0..count).map(sample).collect::<Vec<_>>(), |id, found| {
             let place = DVec3::from_slice(&found.scalars);
-            // A point is known to some 13 digits of the model's size.
-            let size = place.distance(found.sample.points[0]).max(1e-7);
+            let size = place.distance(found.sample.points[0]).max(KNOWN / NEAR);
             assert!(found.difference() <= NEAR * size, "{name} {id}: {:?} {:?}", found.cpu, found.gpu);
         });
     }
 }
 
-/// Templates, and points that are anything, or one of the templates in another order, moved, turned, scaled and moved about.
+/// Templates, and points that are anything, or one of the templates in another order, moved, turned, scaled and moved
+/// about.
 fn templates_and_points(random: &mut Random, id: usize, scaled: bool) -> Sample {
     let k = [4, 3, 5, 4, 6, 2, 7, 1, 8, 12][id / KINDS % 10];
     let kind = if id % KINDS < GENERIC { [0, 9, 12, 7][id % GENERIC] } else { (id / 5) % KINDS };
@@ -296,8 +303,9 @@ fn templates_and_points(random: &mut Random, id: usize, scaled: bool) -> Sample 
     let points = if id / KINDS % 2 == 0 {
         let scale = if scaled { random.size() / unit } else { 1.0 };
         let own = &templates[random.below(template_count)];
-        let (place, turn, shift, noise) =
-            (1e3 * random.vector(), turn(random), random.below(k), [0.0, 1e-8, 0.3][id % 3]);
+        // Of a template that is a point only noise has a size.
+        let noise = if diameter(own) > 0.0 { [0.0, 1e-8, 0.3][id % 3] } else { 0.3 };
+        let (place, turn, shift) = (1e3 * random.vector(), turn(random), random.below(k));
         let is_mirrored = random.below(2) == 0;
         let order = |j: usize| if is_mirrored { (shift + k - j) % k } else { (shift + j) % k };
         (0..k).map(|j| place + scale * (turn * (own[order(j)] - own[0]) + noise * unit * random.vector())).collect()
@@ -381,8 +389,7 @@ fn tiny_constraints_are_projected_within_their_size() {
         };
         // Finite they are by `compare`.
         compare(name, &(0..50 * KINDS).map(&mut sample).collect::<Vec<_>>(), |id, found| {
-            // Points are known to some 13 digits of the model's size.
-            let most = 4.0 * diameter(&found.sample.points) + 1e-10;
+            let most = 4.0 * diameter(&found.sample.points) + KNOWN;
             assert!(found.gpu.iter().all(|target| target.length() <= most), "{name} {id}: {:?} of {most}", found.gpu);
         });
     }

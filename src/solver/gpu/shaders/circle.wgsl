@@ -1,10 +1,11 @@
 // Circle: onto the best-fit plane, then radially onto the algebraic circle. See constraints/circle.rs.
 //
-// Of flat arcs the center is far away, and distances from it have few digits of the points' extent. With `w = tr S / k − ‖q‖² + 2 q·c`,
-// which is `r² − d²` without what cancels, a point at the distance `d` from the center moves by `(q − c) w / (d (d + r))`.
+// Of flat arcs the center is far away, and distances from it have few digits of the points' extent. With
+// `w = tr S / k − ‖q‖² + 2 q·c`, which is `r² − d²` without what cancels, a point at the distance `d` from the center
+// moves by `(q − c) w / (d (d + r))`.
 
-// Points with a lesser ratio of `det S` to `(tr S)²` are within 2e-6 of their size from a line. They are put on it: their places
-// beside it have hardly a digit in single precision.
+// Points with a lesser ratio of `det S` to `(tr S)²` are within 2e-6 of their size from a line. They are put on it:
+// their places beside it have hardly a digit in single precision.
 const STRAIGHT = 4e-12;
 
 struct Circle {

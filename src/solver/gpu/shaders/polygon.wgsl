@@ -8,8 +8,8 @@ const COLLINEAR = 1e-6;
 // Lengths below which a normal at rest says nothing once what it shares with the points' line is taken off.
 const ALONG = 1e-3;
 
-// The cosine and sine of `j` of `k` parts of a turn. Those of the language promise few digits. By Taylor's series, within 45° of
-// one of the axes.
+// The cosine and sine of `j` of `k` parts of a turn. Those of the language promise few digits. By Taylor's series,
+// within 45° of one of the axes.
 fn corner_turn(j: u32, k: u32) -> vec2f {
     let quarter = (8u * j + k) / (2u * k);
     let x = f32(i32(4u * j) - i32(quarter * k)) / f32(k) * QUARTER_TURN;
@@ -24,20 +24,22 @@ fn corner_turn(j: u32, k: u32) -> vec2f {
     }
 }
 
-// The axes of the nearest regular polygon: corner `j` is in the direction `cos a + sin b`, and `‖a‖ = ‖b‖` is `k` times the radius.
+// The axes of the nearest regular polygon: corner `j` is in the direction `cos a + sin b`, and `‖a‖ = ‖b‖` is `k` times
+// the radius.
 struct Polygon {
-    // Of the points; left out where there are four.
+    // Of the points; left out where there are four, of which the three vectors are kept.
     mean: vec3f,
+    vectors: mat3x3f,
     a: vec3f,
     b: vec3f,
     normal: vec3f,
 }
 
 // Of moments `p` and `q` that span no plane, the one of the normal nearest to `rest_normal` is taken.
-fn polygon_along(p: vec3f, q: vec3f, mean: vec3f, rest_normal: vec3f) -> Polygon {
+fn polygon_along(p: vec3f, q: vec3f, rest_normal: vec3f) -> Polygon {
     let squared = dot(p, p) + dot(q, q);
     if !(squared > COINCIDENT_SQUARED) {
-        return Polygon(mean, vec3f(0.0), vec3f(0.0), vec3f(0.0, 0.0, 1.0));
+        return Polygon(vec3f(0.0), mat3x3f(), vec3f(0.0), vec3f(0.0), vec3f(0.0, 0.0, 1.0));
     }
     let per_size = inverseSqrt(squared);
     var normal = cross(p * per_size, q * per_size);
@@ -55,14 +57,16 @@ fn polygon_along(p: vec3f, q: vec3f, mean: vec3f, rest_normal: vec3f) -> Polygon
     var a = p + cross(q, normal);
     // Of thin shapes the normal is not quite orthogonal to `p`, and the polygon must be regular all the same.
     a -= dot(a, normal) * normal;
-    return Polygon(mean, a, cross(normal, a), normal);
+    return Polygon(vec3f(0.0), mat3x3f(), a, cross(normal, a), normal);
 }
 
 fn nearest_polygon(i: u32, rest_normal: vec3f) -> Polygon {
     if batch.points == 4u {
         // The diagonals.
         let vectors = four_points(i);
-        return polygon_along(vectors[0] + vectors[2], vectors[0] - vectors[2], vec3f(0.0), rest_normal);
+        var square = polygon_along(vectors[0] + vectors[2], vectors[0] - vectors[2], rest_normal);
+        square.vectors = vectors;
+        return square;
     }
     let mean = centre(i);
     var p = vec3f(0.0);
@@ -73,7 +77,9 @@ fn nearest_polygon(i: u32, rest_normal: vec3f) -> Polygon {
         p += turn.x * x;
         q += turn.y * x;
     }
-    return polygon_along(p, q, mean, rest_normal);
+    var polygon = polygon_along(p, q, rest_normal);
+    polygon.mean = mean;
+    return polygon;
 }
 
 // Puts the residuals of the corners `factor (cos a + sin b)`.
@@ -81,7 +87,7 @@ fn put_polygon(i: u32, polygon: Polygon, factor: f32) {
     let a = factor * polygon.a;
     let b = factor * polygon.b;
     if batch.points == 4u {
-        let vectors = four_points(i);
+        let vectors = polygon.vectors;
         put_four(i, mat3x3f(a + b - vectors[0], -vectors[1], a - b - vectors[2]));
         return;
     }

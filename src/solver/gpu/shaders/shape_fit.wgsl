@@ -1,11 +1,11 @@
 // The nearest copy of a template shape, in any cyclic or mirrored order of its vertices. See constraints/shape_fit.rs.
 //
-// Numbers: the circumradius of the template if it is a regular polygon, else 0; the number of templates; of each template its size, the
-// root of the sum of its vertices' squared distances from their mean, and the vertices about their mean, over the size. Sizes are 1 where
-// the scale is free.
+// Numbers: the circumradius of the template if it is a regular polygon, else 0; the number of templates; of each
+// template its size, the root of the sum of its vertices' squared distances from their mean, and the vertices about
+// their mean, over the size. Sizes are 1 where the scale is free.
 
-// How far traces and bounds on them are trusted, relative to them. A distance below the root of this, of the points' size, is lost in
-// them.
+// How far traces and bounds on them are trusted, relative to them. A distance below the root of this, of the points'
+// size, is lost in them.
 const TRACE_DIGITS = 1e-5;
 
 // One template in one order of its vertices, turned by `U Vᵀ` and scaled by `factor` to match.
@@ -58,13 +58,14 @@ fn trace_bound(h: mat3x3f) -> f32 {
     return scale * sqrt(squared + 2.0 * sqrt(3.0) * cofactors) * (1.0 + TRACE_DIGITS);
 }
 
-// By how much the squared distance from a template of `size` is less than that from a point, up to a factor and a power; it grows with the trace.
+// Of two candidates, the nearer has the greater one: by how much the squared distance from the template is less than
+// that from a point, or where the scale is free, the root of that.
 fn merit(trace: f32, size: f32, is_scaled: bool) -> f32 {
     return select(size * (2.0 * trace - size), trace, is_scaled);
 }
 
-// The candidate that `rotation` turns, which was found from the covariance. Of thin shapes that does not say, in single precision, how
-// far to turn about their length; along the axes found it does.
+// The candidate that `rotation` turns, which was found from the covariance. Of thin shapes that does not say, in single
+// precision, how far to turn about their length; along the axes found it does.
 fn refined(i: u32, mean: vec3f, candidate: Candidate, rotation: Rotation, is_scaled: bool) -> Candidate {
     var found = candidate;
     let left = covariance(i, mean, rotation.u, rotation.v, found.shape, found.shift, found.is_mirrored);
@@ -113,7 +114,8 @@ fn best_candidate(i: u32, mean: vec3f, is_scaled: bool) -> Candidate {
                 continue;
             }
             // Of templates that are nearly symmetric, distances tell orders apart where traces do not.
-            let own = refined(i, mean, Candidate(shape, shift, is_mirrored, IDENTITY, IDENTITY, 0.0), rotation, is_scaled);
+            let unturned = Candidate(shape, shift, is_mirrored, IDENTITY, IDENTITY, 0.0);
+            let own = refined(i, mean, unturned, rotation, is_scaled);
             let own_squared = squared_distance(i, mean, own);
             if own_merit > best_merit + TRACE_DIGITS * abs(best_merit) || own_squared < best_squared {
                 best = own;

@@ -1,7 +1,7 @@
 // Sphere: radially onto the algebraic sphere. See constraints/sphere.rs; for how far a point moves see circle.wgsl.
 
-// Points whose least scatter is a lesser part of the greatest are within 2e-6 of their size from a plane. They are put on it: their
-// places beside it have hardly a digit in single precision.
+// Points whose least scatter is a lesser part of the greatest are within 2e-6 of their size from a plane. They are put
+// on it: their places beside it have hardly a digit in single precision.
 const FLAT = 4e-12;
 
 struct Sphere {
@@ -16,8 +16,8 @@ fn own_place(i: u32, j: u32, found: Principal) -> vec3f {
     return ((at(i, j) - found.mean) * found.axes) / found.size;
 }
 
-// The center solves `S c = ½ Σ ‖y‖² y`. Along the axes the entries off the diagonal of `S` are small beside the roots of those on it,
-// so that elimination, from the greatest axis on, loses no digits however flat the points are.
+// The center solves `S c = ½ Σ ‖y‖² y`. Along the axes the entries off the diagonal of `S` are small beside the roots
+// of those on it, so that elimination, from the greatest axis on, loses no digits however flat the points are.
 fn sphere_of(i: u32, found: Principal) -> Sphere {
     var squares = vec3f(0.0);
     var off = vec3f(0.0);
