@@ -35,28 +35,30 @@ struct Polygon {
     normal: vec3f,
 }
 
+// `a` less what is along the unit vector `direction`.
+fn beside(a: vec3f, direction: vec3f) -> vec3f {
+    return a - dot(a, direction) * direction;
+}
+
 // Of moments `p` and `q` that span no plane, the one of the normal nearest to `rest_normal` is taken.
 fn polygon_along(p: vec3f, q: vec3f, rest_normal: vec3f) -> Polygon {
     let squared = dot(p, p) + dot(q, q);
     if !(squared > COINCIDENT_SQUARED) {
         return Polygon(vec3f(0.0), mat3x3f(), vec3f(0.0), vec3f(0.0), vec3f(0.0, 0.0, 1.0));
     }
+    let along = normalize(select(q, p, dot(p, p) > dot(q, q)));
     let per_size = inverseSqrt(squared);
-    var normal = cross(p * per_size, q * per_size);
-    if length(normal) > COLLINEAR {
-        normal = normalize(normal);
-    } else {
-        let along = normalize(select(q, p, dot(p, p) > dot(q, q)));
-        let rest = rest_normal - dot(rest_normal, along) * along;
-        if length(rest) > ALONG {
-            normal = normalize(rest);
-        } else {
-            normal = any_orthogonal(along);
-        }
+    // The product of vectors that are nearly on a line has round-off along it.
+    let product = beside(cross(p * per_size, q * per_size), along);
+    let rest = beside(rest_normal, along);
+    var normal = any_orthogonal(along);
+    if length(product) > COLLINEAR {
+        normal = normalize(beside(normalize(product), along));
+    } else if length(rest) > ALONG {
+        normal = normalize(rest);
     }
-    var a = p + cross(q, normal);
-    // Of thin shapes the normal is not quite orthogonal to `p`, and the polygon must be regular all the same.
-    a -= dot(a, normal) * normal;
+    // The polygon must be regular whatever the round-off of the normal.
+    let a = beside(p + cross(q, normal), normal);
     return Polygon(vec3f(0.0), mat3x3f(), a, cross(normal, a), normal);
 }
 
