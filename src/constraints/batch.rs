@@ -74,6 +74,9 @@ pub(crate) trait Batch: Any + Send + Sync {
     /// divided by `size`, then the type's own.
     fn kernel_numbers(&self, slot: usize, size: f64, numbers: &mut Vec<f64>);
 
+    /// A place in the model that the kernel reads after the numbers.
+    fn kernel_place(&self, slot: usize) -> Option<DVec3>;
+
     /// Bytes of what projecting all constraints reads besides the points: indices, scalars and rest states.
     fn byte_count(&self) -> usize;
 
@@ -219,6 +222,10 @@ impl<T: Constraint> Batch for TypedBatch<T> {
         let unit = if matches!(T::KERNEL, Kernel::Wgsl(_, RowUnit::Ratio)) { size } else { 1.0 };
         numbers.extend(self.rows(slot).iter().map(|a| a * unit));
         self.rest[slot].kernel_numbers(self.scalars.get(slot), size, numbers);
+    }
+
+    fn kernel_place(&self, slot: usize) -> Option<DVec3> {
+        self.rest[slot].kernel_place(self.scalars.get(slot))
     }
 
     fn byte_count(&self) -> usize {

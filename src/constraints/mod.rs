@@ -198,6 +198,11 @@ pub trait Constraint: Clone + std::fmt::Debug + Send + Sync + 'static {
     /// coordinates are the model's divided by `size`, a length: so are lengths here. Rows are there already.
     fn kernel_numbers(&self, _scalars: &[f64], _size: f64, _numbers: &mut Vec<f64>) {}
 
+    /// A place in the model that the kernel reads after the numbers, as the sum of two like points: six numbers more.
+    fn kernel_place(&self, _scalars: &[f64]) -> Option<glam::DVec3> {
+        None
+    }
+
     /// How far `x` is from the set, in `INFO.violation_unit`; 0 on the set.
     fn violation(&self, scalars: &[f64], x: Stencil<'_>) -> f64;
 

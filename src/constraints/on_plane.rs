@@ -7,7 +7,9 @@
 
 use glam::DVec3;
 
-use super::{Constraint, Projection, Rows, Scalar, Scalars, Stencil, TypeInfo, check_direction, unit_vector};
+use super::{
+    Constraint, Kernel, Projection, RowUnit, Rows, Scalar, Scalars, Stencil, TypeInfo, check_direction, unit_vector,
+};
 use crate::error::Result;
 
 /// One OnPlane constraint.
@@ -45,6 +47,22 @@ impl Constraint for OnPlane {
         energy_scale_power: 2,
         edited_as: None,
     };
+
+    const KERNEL: Kernel = Kernel::Wgsl(
+        concat!(
+            include_str!("../solver/gpu/shaders/fixed_place.wgsl"),
+            include_str!("../solver/gpu/shaders/on_plane.wgsl")
+        ),
+        RowUnit::Length,
+    );
+
+    fn kernel_numbers(&self, _scalars: &[f64], _size: f64, numbers: &mut Vec<f64>) {
+        numbers.extend(self.normal.to_array());
+    }
+
+    fn kernel_place(&self, scalars: &[f64]) -> Option<DVec3> {
+        Some(DVec3::from_slice(scalars))
+    }
 
     fn at_rest(x: Stencil<'_>, scalars: &mut Vec<f64>) -> Self {
         scalars.extend(x.at(0).to_array());

@@ -103,10 +103,10 @@ pub fn project(scalars: &[f64], x: Stencil<'_>, scale: Scale, mut visit: impl Fn
     }
 }
 
-/// Appends what `shape_fit.wgsl` reads: the circumradius of the regular polygon (`known`: the number of points, and that, as
-/// [`polygon_radius`] gave it) and the number of templates; then of each template its size, the root of the sum of its vertices' squared distances
-/// from their mean, and its vertices about the mean, over the size. Sizes are in units of `unit` where the scale is fixed, else 1;
-/// a template that is a point has size and vertices 0.
+/// Appends what `shape_fit.wgsl` reads of a constraint; `known` are its number of points and what [`polygon_radius`] gave. They
+/// are: that radius and the number of templates; then of each template its size, the root of the sum of its vertices' squared
+/// distances from their mean, and the vertices about the mean, over the size. Sizes are in units of `unit` where the scale is
+/// fixed, else 1; a template that is a point has size and vertices 0.
 pub fn kernel_numbers(scalars: &[f64], known: (usize, f64), scale: Scale, unit: f64, numbers: &mut Vec<f64>) {
     let (k, polygon_radius) = known;
     let in_units = |length: f64| match scale {

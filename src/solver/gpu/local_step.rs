@@ -117,6 +117,7 @@ pub(super) fn buckets(
             let first_slot = slots.first().map_or(0, |slot| *slot as usize);
             let mut numbers = Vec::new();
             batch.kernel_numbers(first_slot, 1.0, &mut numbers);
+            numbers.extend(batch.kernel_place(first_slot).iter().flat_map(|_| [0.0; 6]));
             // Results are four numbers, all else is one. The same cut whatever is wanted.
             let rows = batch.info().rows.count(points);
             let widest = points.max(rows).max(numbers.len().div_ceil(4)).max(1);
@@ -186,6 +187,9 @@ impl Bucket {
             batch.indices(slot as usize).iter().enumerate().for_each(|(j, point)| indices[j * count + i] = *point);
             own.clear();
             batch.kernel_numbers(slot as usize, frame.size, &mut own);
+            if let Some(place) = batch.kernel_place(slot as usize) {
+                own.extend(frame.split(place).iter().flat_map(|part| &part[..3]).map(|number| f64::from(*number)));
+            }
             numbers.resize(own.len() * count, 0.0);
             own.iter().enumerate().for_each(|(n, number)| numbers[n * count + i] = single(*number));
         }

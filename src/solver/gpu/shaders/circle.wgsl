@@ -1,10 +1,12 @@
 // Circle: onto the best-fit plane, then radially onto the algebraic circle. See constraints/circle.rs.
 //
-// Of flat arcs the center is far away, and distances from it have few digits of the points' extent. With `w = tr S / k − ‖q‖² + 2 q·c`,
-// which is `r² − d²` without what cancels, a point at the distance `d` from the center moves by `(q − c) w / (d (d + r))`.
+// Of flat arcs the center is far away, and distances from it have few digits of the points' extent. With
+// `w = tr S / k − ‖q‖² + 2 q·c`, which is `r² − d²` without what cancels, a point at the distance `d` from the center
+// moves by `(q − c) w / (d (d + r))`.
 
-// As on the processor: points with a lesser ratio of `det S` to `(tr S)²` are on a line.
-const STRAIGHT = 1e-12;
+// Points with a lesser ratio of `det S` to `(tr S)²` are within 2e-6 of their size from a line. They are put on it:
+// their places beside it have hardly a digit in single precision.
+const STRAIGHT = 4e-12;
 
 struct Circle {
     // In units of `size`, along the axes of greatest and middle scatter.
@@ -22,15 +24,16 @@ fn own_place(i: u32, j: u32, found: Principal) -> vec3f {
 fn circle_of(i: u32, found: Principal) -> Circle {
     // Σ u², Σ v², Σ u v.
     var squares = vec3f(0.0);
+    // Σ (‖q‖² − tr S / k) q: the second part adds nothing but takes off what cancels.
     var moment = vec2f(0.0);
+    let spread = found.spread.y + found.spread.z;
     for (var j = 0u; j < batch.points; j++) {
         let q = own_place(i, j, found).zy;
         squares += q.xyx * q.xyy;
-        moment += q * dot(q, q);
+        moment += q * (dot(q, q) - spread);
     }
     let sum = squares.x + squares.y;
     let determinant = squares.x * squares.y - squares.z * squares.z;
-    let spread = sum / f32(batch.points);
     if !(determinant > STRAIGHT * sum * sum) {
         return Circle(vec2f(0.0), spread, true);
     }
@@ -41,7 +44,7 @@ fn circle_of(i: u32, found: Principal) -> Circle {
 // How a point at `y` moves, along the axes and in units of the size.
 fn move_of(y: vec3f, circle: Circle) -> vec3f {
     if circle.is_straight {
-        return vec3f(-y.x, 0.0, 0.0);
+        return vec3f(-y.x, -y.y, 0.0);
     }
     let q = y.zy;
     let from_center = q - circle.center;

@@ -1,17 +1,18 @@
 // Decompositions of 3×3 matrices, twins of linalg/small.rs, and what the projections of centred types share.
 //
-// Square roots and quotients of cards err by a few units in the last place, so that after some rotations vectors are no longer
-// of unit length: they are normalised at the end.
+// Square roots and quotients of cards err by a few units in the last place, so that after some rotations vectors are no
+// longer of unit length: they are normalised at the end.
 
-// Sweeps after which Jacobi iterations stop whatever is left. Convergence is quadratic: in single precision four or five
-// suffice.
+// Sweeps after which Jacobi iterations stop whatever is left. Convergence is quadratic: in single precision four or
+// five suffice.
 const SWEEPS = 7u;
 
-// The square of the cosine between columns, and off-diagonal entries relative to the diagonal ones beside them, squared, that
-// count as 0: round-off.
+// The square of the cosine between columns, and off-diagonal entries relative to the diagonal ones beside them,
+// squared, that count as 0: round-off.
 const ORTHOGONAL_SQUARED = 1e-15;
 
-// Lengths on the card, squared, at and below which points coincide: their own squares would leave the range of single precision.
+// Lengths on the card, squared, at and below which points coincide: their own squares would leave the range of single
+// precision.
 const COINCIDENT_SQUARED = 1e-30;
 
 // Point count from which on the mean is summed twice, for then the round-off of the first sum shows.
@@ -115,7 +116,8 @@ fn symmetric_eigen(diagonal: vec3f, off: vec3f) -> Eigen {
     return Eigen(d * scale, mat3x3f(cross(y, z), y, z));
 }
 
-// A matrix `M` as `scale A Vᵀ`: the columns of `A` are orthogonal, of descending length, the longest about 1; `V` is a rotation.
+// A matrix `M` as `scale A Vᵀ`: the columns of `A` are orthogonal, of descending length, the longest about 1; `V` is a
+// rotation.
 struct Orthogonalised {
     a: mat3x3f,
     v: mat3x3f,
@@ -202,8 +204,8 @@ struct Rotation {
     trace: f32,
 }
 
-// Both `U` and `V` are rotations, whatever the rank of `m` and the sign of its determinant. Where the determinant is below 0, the
-// least singular value counts negative: it is the one along the third column of `U`.
+// Both `U` and `V` are rotations, whatever the rank of `m` and the sign of its determinant. Where the determinant is
+// below 0, the least singular value counts negative: it is the one along the third column of `U`.
 fn nearest_rotation(m: mat3x3f) -> Rotation {
     let found = orthogonalised(m);
     let a = found.a;
@@ -247,33 +249,37 @@ fn scatter(i: u32, mean: vec3f, frame: mat3x3f) -> Scatter {
     return sum;
 }
 
-// Where the points lie: their mean, the square root of the sum of their squared distances from it (0 where they coincide), and
-// the axes of least, middle and greatest scatter.
+// Where the points lie: their mean, the square root of the sum of their squared distances from it (0 where they
+// coincide), the axes of least, middle and greatest scatter, and the means of the squared coordinates along them, over
+// the size squared.
 struct Principal {
     mean: vec3f,
     size: f32,
     axes: mat3x3f,
+    spread: vec3f,
 }
 
-// A scatter in single precision says nothing of extents below some 3e-4 of the greatest. Along the axes that it has, coordinates
-// are accurate to single precision of the greatest extent, and their scatter says what is left to turn.
+// A scatter in single precision says nothing of extents below some 3e-4 of the greatest. Along the axes that it has,
+// coordinates are accurate to single precision of the greatest extent, and their scatter says what is left to turn.
 fn principal(i: u32) -> Principal {
     let mean = centre(i);
     let first = scatter(i, mean, IDENTITY);
     let squared = first.diagonal.x + first.diagonal.y + first.diagonal.z;
     if !(squared > COINCIDENT_SQUARED) {
-        return Principal(mean, 0.0, IDENTITY);
+        return Principal(mean, 0.0, IDENTITY, vec3f(0.0));
     }
     let frame = symmetric_eigen(first.diagonal, first.off).vectors;
     let second = scatter(i, mean, frame);
-    let axes = frame * symmetric_eigen(second.diagonal, second.off).vectors;
+    let turned = symmetric_eigen(second.diagonal, second.off);
+    let axes = frame * turned.vectors;
     let z = normalize(axes[2]);
     let y = unit_beside(axes[1], z);
-    return Principal(mean, sqrt(squared), mat3x3f(cross(y, z), y, z));
+    let spread = turned.values / (squared * f32(batch.points));
+    return Principal(mean, sqrt(squared), mat3x3f(cross(y, z), y, z), spread);
 }
 
-// Four points about their mean are half the sums of three vectors with signs: + + +, + − −, − + −, − − +. The scatter of the
-// points is that of the vectors.
+// Four points about their mean are half the sums of three vectors with signs: + + +, + − −, − + −, − − +. The scatter
+// of the points is that of the vectors.
 fn four_points(i: u32) -> mat3x3f {
     let x = at(i, 1u);
     let y = at(i, 2u);

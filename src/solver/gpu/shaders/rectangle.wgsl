@@ -30,8 +30,8 @@ fn project(i: u32) {
     let least = found.v[2];
     let u = normalize(found.a[0]);
     let v = unit_beside(found.a[1], u);
-    // In the plane, over the size. Of the sides, x₁ − x₀ = −b − c, x₃ − x₂ = c − b, x₂ − x₁ = b − a, x₀ − x₃ = a + b, if the
-    // three vectors are a, b and c: a is the middle of the side 01, −a that of 23, c that of 30, −c that of 12.
+    // In the plane, over the size. If the three vectors are a, b and c, the sides are x₁ − x₀ = −b − c, x₂ − x₁ = b −
+    // a, x₃ − x₂ = c − b and x₀ − x₃ = a + b, and their middles ½ a, −½ c, −½ a and ½ c.
     let a = vec2f(dot(vectors[0], u), dot(vectors[0], v)) / found.scale;
     let b = vec2f(dot(vectors[1], u), dot(vectors[1], v)) / found.scale;
     let c = vec2f(dot(vectors[2], u), dot(vectors[2], v)) / found.scale;

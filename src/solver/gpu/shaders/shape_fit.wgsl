@@ -1,17 +1,21 @@
 // The nearest copy of a template shape, in any cyclic or mirrored order of its vertices. See constraints/shape_fit.rs.
 //
-// Numbers: the circumradius of the template if it is a regular polygon, else 0; the number of templates; of each template its size, the
-// root of the sum of its vertices' squared distances from their mean, and the vertices about their mean, over the size. Sizes are 1 where
-// the scale is free.
+// Numbers: the circumradius of the template if it is a regular polygon, else 0; the number of templates; of each
+// template its size, the root of the sum of its vertices' squared distances from their mean, and the vertices about
+// their mean, over the size. Sizes are 1 where the scale is free.
 
-// How far a bound on a trace may be exceeded by round-off, relative to the bound.
-const BOUND_SLACK = 1e-5;
+// How far traces and bounds on them are trusted, relative to them. A distance below the root of this, of the points'
+// size, is lost in them.
+const TRACE_DIGITS = 1e-5;
 
+// One template in one order of its vertices, turned by `U Vᵀ` and scaled by `factor` to match.
 struct Candidate {
     shape: u32,
     shift: u32,
     is_mirrored: bool,
-    rotation: Rotation,
+    u: mat3x3f,
+    v: mat3x3f,
+    factor: f32,
 }
 
 fn shape_number(shape: u32) -> u32 {
@@ -36,23 +40,62 @@ fn covariance(i: u32, mean: vec3f, u: mat3x3f, v: mat3x3f, shape: u32, shift: u3
 
 // A bound on the trace that the best rotation reaches: see `trace_bound` in shape_fit.rs.
 fn trace_bound(h: mat3x3f) -> f32 {
-    let a = cross(h[0], h[1]);
-    let b = cross(h[1], h[2]);
-    let c = cross(h[2], h[0]);
+    let most = max(max(abs(h[0]), abs(h[1])), abs(h[2]));
+    let scale = max(most.x, max(most.y, most.z));
+    if !(scale * scale > COINCIDENT_SQUARED) {
+        // The sum of the entries is a bound too.
+        return 9.0 * scale;
+    }
+    // Products of four tiny entries would leave the range of single precision.
+    let x = h[0] / scale;
+    let y = h[1] / scale;
+    let z = h[2] / scale;
+    let a = cross(x, y);
+    let b = cross(y, z);
+    let c = cross(z, x);
     let cofactors = sqrt(dot(a, a) + dot(b, b) + dot(c, c));
-    let squared = dot(h[0], h[0]) + dot(h[1], h[1]) + dot(h[2], h[2]);
-    return sqrt(squared + 2.0 * sqrt(3.0) * cofactors) * (1.0 + BOUND_SLACK);
+    let squared = dot(x, x) + dot(y, y) + dot(z, z);
+    return scale * sqrt(squared + 2.0 * sqrt(3.0) * cofactors) * (1.0 + TRACE_DIGITS);
 }
 
-// By how much the squared distance from a template of `size` is less than that from a point, up to a factor and a power; it grows with the trace.
+// Of two candidates, the nearer has the greater one: by how much the squared distance from the template is less than
+// that from a point, or where the scale is free, the root of that.
 fn merit(trace: f32, size: f32, is_scaled: bool) -> f32 {
     return select(size * (2.0 * trace - size), trace, is_scaled);
 }
 
+// The candidate that `rotation` turns, which was found from the covariance. Of thin shapes that does not say, in single
+// precision, how far to turn about their length; along the axes found it does.
+fn refined(i: u32, mean: vec3f, candidate: Candidate, rotation: Rotation, is_scaled: bool) -> Candidate {
+    var found = candidate;
+    let left = covariance(i, mean, rotation.u, rotation.v, found.shape, found.shift, found.is_mirrored);
+    let rest = nearest_rotation(left);
+    found.u = rotation.u * rest.u;
+    found.v = rotation.v * rest.v;
+    found.factor = select(number(i, shape_number(found.shape)), rest.trace, is_scaled);
+    return found;
+}
+
+// By how much point `j` is to move.
+fn residual_of(i: u32, mean: vec3f, found: Candidate, j: u32) -> vec3f {
+    let q = vertex(i, found.shape, found.shift, found.is_mirrored, j);
+    return found.factor * (found.u * (q * found.v)) - (at(i, j) - mean);
+}
+
+fn squared_distance(i: u32, mean: vec3f, found: Candidate) -> f32 {
+    var sum = 0.0;
+    for (var j = 0u; j < batch.points; j++) {
+        let residual = residual_of(i, mean, found, j);
+        sum += dot(residual, residual);
+    }
+    return sum;
+}
+
 fn best_candidate(i: u32, mean: vec3f, is_scaled: bool) -> Candidate {
-    var best = Candidate(0u, 0u, false, Rotation(IDENTITY, IDENTITY, 0.0));
-    var best_merit = 0.0;
-    var is_first = true;
+    var best = Candidate(0u, 0u, false, IDENTITY, IDENTITY, 0.0);
+    // Below every merit.
+    var best_merit = -3.4e38;
+    var best_squared = 0.0;
     let shape_count = u32(number(i, 1u));
     for (var shape = 0u; shape < shape_count; shape++) {
         let size = number(i, shape_number(shape));
@@ -60,16 +103,24 @@ fn best_candidate(i: u32, mean: vec3f, is_scaled: bool) -> Candidate {
             let is_mirrored = order >= batch.points;
             let shift = select(order, order - batch.points, is_mirrored);
             let h = covariance(i, mean, IDENTITY, IDENTITY, shape, shift, is_mirrored);
+            let least = best_merit - TRACE_DIGITS * abs(best_merit);
             // Most orders are far worse than the best so far: no rotation needs to be fitted to know.
-            if !is_first && merit(trace_bound(h), size, is_scaled) < best_merit {
+            if merit(trace_bound(h), size, is_scaled) < least {
                 continue;
             }
             let rotation = nearest_rotation(h);
             let own_merit = merit(rotation.trace, size, is_scaled);
-            if is_first || own_merit > best_merit {
-                best = Candidate(shape, shift, is_mirrored, rotation);
+            if own_merit < least {
+                continue;
+            }
+            // Of templates that are nearly symmetric, distances tell orders apart where traces do not.
+            let unturned = Candidate(shape, shift, is_mirrored, IDENTITY, IDENTITY, 0.0);
+            let own = refined(i, mean, unturned, rotation, is_scaled);
+            let own_squared = squared_distance(i, mean, own);
+            if own_merit > best_merit + TRACE_DIGITS * abs(best_merit) || own_squared < best_squared {
+                best = own;
                 best_merit = own_merit;
-                is_first = false;
+                best_squared = own_squared;
             }
         }
     }
@@ -77,36 +128,28 @@ fn best_candidate(i: u32, mean: vec3f, is_scaled: bool) -> Candidate {
 }
 
 fn fit(i: u32, is_scaled: bool) {
-    let mean = centre(i);
     let radius = number(i, 0u);
     if radius > 0.0 {
-        fit_polygon(i, mean, radius, is_scaled);
+        fit_polygon(i, radius, is_scaled);
         return;
     }
+    let mean = centre(i);
     let best = best_candidate(i, mean, is_scaled);
-    // Of thin shapes the covariance in single precision does not say how far to turn about their length; along the axes found it does.
-    let own = best.rotation;
-    let left = covariance(i, mean, own.u, own.v, best.shape, best.shift, best.is_mirrored);
-    let rest = nearest_rotation(left);
-    let u = own.u * rest.u;
-    let v = own.v * rest.v;
-    let factor = select(number(i, shape_number(best.shape)), rest.trace, is_scaled);
     for (var j = 0u; j < batch.points; j++) {
-        let target_place = factor * (u * (vertex(i, best.shape, best.shift, best.is_mirrored, j) * v));
-        put_centred(i, j, target_place - (at(i, j) - mean), vec3f(0.0));
+        put_centred(i, j, residual_of(i, mean, best, j), vec3f(0.0));
     }
 }
 
 // All orders of a regular polygon are turns of each other, so the order of the points will do.
-fn fit_polygon(i: u32, mean: vec3f, radius: f32, is_scaled: bool) {
-    var polygon = nearest_polygon(i, mean, vec3f(0.0));
+fn fit_polygon(i: u32, radius: f32, is_scaled: bool) {
+    var polygon = nearest_polygon(i, vec3f(0.0));
     if is_scaled {
-        put_polygon(i, mean, polygon, 1.0 / f32(batch.points));
+        put_polygon(i, polygon, 1.0 / f32(batch.points));
         return;
     }
     // Points of which no direction is better than another are given any.
-    let along = select(any_orthogonal(polygon.normal), polygon.a, dot(polygon.a, polygon.a) > COINCIDENT_SQUARED);
-    let a = normalize(along);
-    polygon = Polygon(a, cross(polygon.normal, a), polygon.normal);
-    put_polygon(i, mean, polygon, radius);
+    let is_along = dot(polygon.a, polygon.a) > COINCIDENT_SQUARED;
+    polygon.a = normalize(select(any_orthogonal(polygon.normal), polygon.a, is_along));
+    polygon.b = cross(polygon.normal, polygon.a);
+    put_polygon(i, polygon, radius);
 }

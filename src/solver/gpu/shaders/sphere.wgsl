@@ -1,7 +1,8 @@
 // Sphere: radially onto the algebraic sphere. See constraints/sphere.rs; for how far a point moves see circle.wgsl.
 
-// As on the processor: points whose least scatter is a lesser part of the greatest are in a plane.
-const FLAT = 1e-12;
+// Points whose least scatter is a lesser part of the greatest are within 2e-6 of their size from a plane. They are put
+// on it: their places beside it have hardly a digit in single precision.
+const FLAT = 4e-12;
 
 struct Sphere {
     // About the mean, in units of `size`, along the axes of least, middle and greatest scatter.
@@ -15,19 +16,20 @@ fn own_place(i: u32, j: u32, found: Principal) -> vec3f {
     return ((at(i, j) - found.mean) * found.axes) / found.size;
 }
 
-// The center solves `S c = ½ Σ ‖y‖² y`. Along the axes the entries off the diagonal of `S` are small beside the roots of those on it,
-// so that elimination, from the greatest axis on, loses no digits however flat the points are.
+// The center solves `S c = ½ Σ ‖y‖² y`. Along the axes the entries off the diagonal of `S` are small beside the roots
+// of those on it, so that elimination, from the greatest axis on, loses no digits however flat the points are.
 fn sphere_of(i: u32, found: Principal) -> Sphere {
     var squares = vec3f(0.0);
     var off = vec3f(0.0);
+    // Σ (‖y‖² − tr S / k) y: the second part adds nothing but takes off what cancels.
     var moment = vec3f(0.0);
+    let spread = found.spread.x + found.spread.y + found.spread.z;
     for (var j = 0u; j < batch.points; j++) {
         let y = own_place(i, j, found);
         squares += y * y;
         off += y.yxx * y.zzy;
-        moment += y * dot(y, y);
+        moment += y * (dot(y, y) - spread);
     }
-    let spread = (squares.x + squares.y + squares.z) / f32(batch.points);
     let middle_of_greatest = off.x / squares.z;
     let least_of_greatest = off.y / squares.z;
     let middle = squares.y - middle_of_greatest * off.x;
@@ -51,7 +53,7 @@ fn sphere_of(i: u32, found: Principal) -> Sphere {
 
 fn move_of(y: vec3f, sphere: Sphere) -> vec3f {
     if sphere.is_flat {
-        return vec3f(0.0);
+        return vec3f(-y.x, 0.0, 0.0);
     }
     let from_center = y - sphere.center;
     let distance = length(from_center);
