@@ -18,8 +18,9 @@ const STIR: f64 = 1e-6;
 /// Coordinates of a thousand keep some 1e-13, which rows of absolute points lose: in the size that [`NEAR`] is a part of.
 const COORDINATE: f64 = 1e-12 / NEAR;
 
-/// So often is the processor asked how much its answer changes.
-const STIRS: usize = 16;
+/// So often is the processor asked how much its answer changes, by all of [`STIR`], a tenth and a hundredth of it in turn: where
+/// singular values all but vanish the answer depends on their ratio.
+const STIRS: usize = 500;
 
 /// How a sample is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -198,9 +199,14 @@ fn straightened(points: &[DVec3]) -> Vec<DVec3> {
     points.iter().map(|point| first + (*point - first).dot(along) * along).collect()
 }
 
+/// How far a round stirs, of the size.
+fn stir_by(round: usize) -> f64 {
+    STIR * 0.1_f64.powi((round % 3) as i32)
+}
+
 /// The points moved by [`STIR`] of the diameter; first onto a line, if they are so near to one.
 fn stir_points(sample: &Sample, round: usize, random: &mut Random) -> Vec<DVec3> {
-    let (points, by) = (&sample.points, STIR * diameter(&sample.points));
+    let (points, by) = (&sample.points, stir_by(round) * diameter(&sample.points));
     let straight = straightened(points);
     if round == 0 && straight.iter().zip(points).all(|(a, b)| a.distance(*b) <= by) {
         return straight;
@@ -208,16 +214,29 @@ fn stir_points(sample: &Sample, round: usize, random: &mut Random) -> Vec<DVec3>
     points.iter().map(|point| *point + by * random.vector()).collect()
 }
 
-/// The points moved so that the deformation gradient changes by [`STIR`] of its size.
+/// What takes the least singular value of three columns off, where it is far below the others: with the cofactors `C` that is
+/// `−det C/‖C‖²`.
+fn flattening(c: &[DVec3]) -> Vec<DVec3> {
+    let cofactors = [c[1].cross(c[2]), c[2].cross(c[0]), c[0].cross(c[1])];
+    let squared: f64 = cofactors.iter().map(|cofactor| cofactor.length_squared()).sum();
+    let factor = if squared > 0.0 { c[0].dot(cofactors[0]) / squared } else { 0.0 };
+    cofactors.iter().map(|cofactor| -factor * *cofactor).collect()
+}
+
+/// The points moved so that the deformation gradient changes by [`STIR`] of its size; first to a flat one, if it is so near.
 fn stir_gradient(sample: &Sample, round: usize, random: &mut Random) -> Vec<DVec3> {
     let rest = sample.rest.as_ref().unwrap();
-    let (inverse, size) = (inverse(rest), gradient(rest, &sample.points).1);
+    let (inverse, (columns, size)) = (inverse(rest), gradient(rest, &sample.points));
     if inverse[0][0] == 0.0 && inverse[0][1] == 0.0 {
         return stir_points(sample, round, random);
     }
     let e = edges(rest);
     let along = e[0].normalize();
-    let by: Vec<DVec3> = e.iter().map(|_| STIR * size * random.vector()).collect();
+    let mut by: Vec<DVec3> = e.iter().map(|_| stir_by(round) * size * random.vector()).collect();
+    if round == 0 && columns.len() == 3 {
+        let flattening = flattening(&columns);
+        by = if longest(&flattening) <= STIR * size { flattening } else { by };
+    }
     let moved = |edge: &DVec3| match by[..] {
         [first, second] => edge.dot(along) * first + (*edge - edge.dot(along) * along).length() * second,
         _ => DMat3::from_cols(by[0], by[1], by[2]) * *edge,

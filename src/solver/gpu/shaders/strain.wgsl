@@ -284,7 +284,8 @@ fn move_product_3(s: vec3f, low: f32, high: f32) -> vec3f {
         let g = vec3f(m.y * m.z, m.x * m.z, m.x * m.y);
         let squared = dot(g, g);
         // A shape with two vanishing singular values has no direction to grow in: it stays.
-        if squared < PRODUCT_VANISHING * PRODUCT_VANISHING || least >= PRODUCT_BOUND {
+        let vanishing = select(STRAIN_ZERO, PRODUCT_VANISHING * PRODUCT_VANISHING, step == 0u);
+        if squared < vanishing || least >= PRODUCT_BOUND {
             break;
         }
         let next = (dot(g, d) - scale * excess) / squared * g;
