@@ -1,8 +1,8 @@
 // Two edges from a point, their angle and their turns, for the types that bound it: by cosines and sines alone, as cards need not
 // compute angles to more than a few digits. See constraints/angle.rs.
 
-// Edges whose angle has no larger sine are along one line: in single precision they span no plane.
-const CORNER_COLLINEAR: f32 = 1e-6;
+// Edges whose angle has no larger sine are along one line: a few units in the last place, which span no plane.
+const CORNER_COLLINEAR: f32 = 5e-7;
 
 // Shorter edges have no direction: their squares leave single precision. They are round-off of the coordinates, which go to 1.
 const CORNER_SHORTEST: f32 = 1e-18;
@@ -60,14 +60,15 @@ fn corner_span(corner: ptr<function, Corner>, normal: vec3f) {
 
 // What the corner's angle lacks to be within the range whose ends have the cosines and sines `low` and `high`.
 fn corner_correction(corner: Corner, low: vec2f, high: vec2f) -> Correction {
-    // The sine of the difference of two angles within 0..π has the sign of the difference.
-    let large = corner.sine * high.x - corner.cosine * high.y;
-    let small = low.y * corner.cosine - low.x * corner.sine;
-    if large > 0.0 {
-        return Correction(1.0, corner.cosine * high.x + corner.sine * high.y, large);
+    // The sine of the difference of two angles within 0..π has the sign of the difference, but where that is
+    // all of π.
+    let large = Correction(1.0, dot(vec2f(corner.cosine, corner.sine), high), corner.sine * high.x - corner.cosine * high.y);
+    if large.sine > 0.0 || (large.sine == 0.0 && large.cosine < 0.0 && corner.cosine < 0.0) {
+        return large;
     }
-    if small > 0.0 {
-        return Correction(-1.0, corner.cosine * low.x + corner.sine * low.y, small);
+    let small = Correction(-1.0, dot(vec2f(corner.cosine, corner.sine), low), low.y * corner.cosine - low.x * corner.sine);
+    if small.sine > 0.0 || (small.sine == 0.0 && small.cosine < 0.0 && corner.cosine > 0.0) {
+        return small;
     }
     return Correction(0.0, 1.0, 0.0);
 }

@@ -19,6 +19,13 @@ const LEAST_PART: f32 = 1e-18;
 // Smaller quads are a point: their squares leave single precision. They are round-off of the coordinates, which go to 1.
 const SMALLEST: f32 = 1e-18;
 
+// From one point to another, accurate where they are near to each other but not to point 0 too.
+fn diagonal(i: u32, from_point: u32, to_point: u32) -> vec3f {
+    let start = indices[from_point * batch.count + i];
+    let end = indices[to_point * batch.count + i];
+    return (base[end].xyz - base[start].xyz) + (shift[end].xyz - shift[start].xyz);
+}
+
 // The unit vector that minimises `‖X n − b‖`, of diagonals `u` and `v` whose middles are `w` apart.
 fn common_normal(u: vec3f, v: vec3f, w: vec3f, epsilon: f32) -> vec3f {
     let svd = singular_3(mat3x3f(0.70710678 * u, 0.70710678 * v, w));
@@ -53,30 +60,36 @@ fn common_normal(u: vec3f, v: vec3f, w: vec3f, epsilon: f32) -> vec3f {
 // The normal of the planes; 0 where the diagonals are near enough.
 fn normal_of(u: vec3f, v: vec3f, w: vec3f, epsilon: f32) -> vec3f {
     let normal = cross(u, v);
-    let lengths = length(u) * length(v);
+    let squares = vec2f(dot(u, u), dot(v, v));
     let sine = length(normal);
     // Where one diagonal has no length both are 0.
-    if sine <= PARALLEL * lengths || abs(dot(w, normal)) <= epsilon * sine {
+    if sine <= PARALLEL * sqrt(squares.x * squares.y) {
+        return vec3f(0.0);
+    }
+    // What of w lies along the longer diagonal has no part in the distance, but much in the round-off.
+    let along = normalize(select(u, v, squares.y > squares.x));
+    let rough = w - dot(w, along) * along;
+    let beside = rough - dot(rough, along) * along;
+    if abs(dot(beside, normal)) <= epsilon * sine {
         return vec3f(0.0);
     }
     return common_normal(u, v, w, epsilon);
 }
 
 fn project(i: u32) {
-    let b = at(i, 1u);
-    let c = at(i, 2u);
-    let d = at(i, 3u);
-    let whole = 0.5 * (b + (d - c));
-    let size = max(strain_largest(whole), max(strain_largest(c), strain_largest(d - b)));
+    let whole_u = diagonal(i, 0u, 2u);
+    let whole_v = diagonal(i, 1u, 3u);
+    let whole_w = 0.5 * (diagonal(i, 0u, 1u) + diagonal(i, 2u, 3u));
+    let size = max(strain_largest(whole_w), max(strain_largest(whole_u), strain_largest(whole_v)));
     let epsilon = number(i, 0u);
     var n = vec3f(0.0);
     if size > SMALLEST && epsilon < 2.0 * size {
-        n = normal_of(c / size, (d - b) / size, whole / size, epsilon / size);
+        n = normal_of(whole_u / size, whole_v / size, whole_w / size, epsilon / size);
     }
     // Relative to the middle the points are −w/2 ∓ u/2 and w/2 ∓ v/2.
-    let w = 0.5 * dot(whole, n);
-    let u = 0.5 * dot(c, n);
-    let v = 0.5 * dot(d - b, n);
+    let w = 0.5 * dot(whole_w, n);
+    let u = 0.5 * dot(whole_u, n);
+    let v = 0.5 * dot(whole_v, n);
     put_centred(i, 0u, (w + u - 0.5 * epsilon) * n, vec3f(0.0));
     put_centred(i, 1u, (v - w + 0.5 * epsilon) * n, vec3f(0.0));
     put_centred(i, 2u, (w - u - 0.5 * epsilon) * n, vec3f(0.0));

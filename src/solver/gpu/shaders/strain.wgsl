@@ -7,8 +7,11 @@ const STRAIN_SWEEPS: u32 = 10u;
 // answer by as much, a few units in the last place.
 const STRAIN_ORTHOGONAL: f32 = 4e-7;
 
-// Below this multiple of the greatest singular value the round-off of the columns is all that is left of one.
-const STRAIN_VANISHING: f32 = 1e-6;
+// Below this multiple of the greatest singular value not even the round-off of the columns is left of one.
+const STRAIN_VANISHING: f32 = 1e-8;
+
+// A vector whose part beside another is a smaller part of it has lost too many digits there.
+const STRAIN_BESIDE: f32 = 0.01;
 
 // Matrices without a larger entry are zero: their inverse would be infinite.
 const STRAIN_ZERO: f32 = 1e-30;
@@ -83,7 +86,7 @@ fn strain_any_beside(u: vec3f) -> vec3f {
 fn strain_beside(b: vec3f, u: vec3f) -> vec3f {
     let own = b - dot(b, u) * u;
     let squared = dot(own, own);
-    if squared > STRAIN_VANISHING * STRAIN_VANISHING {
+    if squared > max(STRAIN_VANISHING * STRAIN_VANISHING, STRAIN_BESIDE * STRAIN_BESIDE * dot(b, b)) {
         return own * inverseSqrt(squared);
     }
     return strain_any_beside(u);
@@ -204,14 +207,15 @@ fn gradient_2(i: u32, rows: Rows2) -> mat2x3f {
 // `put_linear` for triangles.
 fn put_gradient_2(i: u32, rows: Rows2, residual: mat2x3f) {
     let s = stiffness[i];
-    let energies = 0.5 * s * vec2f(dot(residual[0], residual[0]), dot(residual[1], residual[1]));
+    let weighted = s * residual;
+    let energies = 0.5 * vec2f(dot(weighted[0], residual[0]), dot(weighted[1], residual[1]));
     if batch.wants_rows != 0u {
         write(i, 0u, vec4f(residual[0], energies.x));
         write(i, 1u, vec4f(residual[1], energies.y));
         return;
     }
-    let first = s * (residual * rows.of_first);
-    let second = s * (residual * rows.of_second);
+    let first = weighted * rows.of_first;
+    let second = weighted * rows.of_second;
     write(i, 0u, vec4f(-first - second, energies.x + energies.y));
     write(i, 1u, vec4f(first, 0.0));
     write(i, 2u, vec4f(second, 0.0));
@@ -234,15 +238,16 @@ fn gradient_3(i: u32, rows: mat3x3f) -> mat3x3f {
 // `put_linear` for tetrahedra.
 fn put_gradient_3(i: u32, rows: mat3x3f, residual: mat3x3f) {
     let s = stiffness[i];
-    let squares = vec3f(dot(residual[0], residual[0]), dot(residual[1], residual[1]), dot(residual[2], residual[2]));
-    let energies = 0.5 * s * squares;
+    let weighted = s * residual;
+    let energies =
+        0.5 * vec3f(dot(weighted[0], residual[0]), dot(weighted[1], residual[1]), dot(weighted[2], residual[2]));
     if batch.wants_rows != 0u {
         write(i, 0u, vec4f(residual[0], energies.x));
         write(i, 1u, vec4f(residual[1], energies.y));
         write(i, 2u, vec4f(residual[2], energies.z));
         return;
     }
-    let pulls = s * (residual * rows);
+    let pulls = weighted * rows;
     write(i, 0u, vec4f(-pulls[0] - pulls[1] - pulls[2], energies.x + energies.y + energies.z));
     write(i, 1u, vec4f(pulls[0], 0.0));
     write(i, 2u, vec4f(pulls[1], 0.0));
@@ -255,6 +260,9 @@ const PRODUCT_STEPS: u32 = 4u;
 // Singular values beyond this many times those at rest are not gone for: their squares would leave single precision. A shape
 // shrunk to a millionth is sent to about 1e11 times its rest shape by the first step.
 const PRODUCT_LARGEST: f32 = 1e15;
+
+// Where two singular values are below this multiple of the greatest, the shape is a line within round-off.
+const PRODUCT_VANISHING: f32 = 1e-6;
 
 // Products of relative values that are to be larger than this are not gone for either.
 const PRODUCT_BOUND: f32 = 1e30;
@@ -276,7 +284,8 @@ fn move_product_3(s: vec3f, low: f32, high: f32) -> vec3f {
         let g = vec3f(m.y * m.z, m.x * m.z, m.x * m.y);
         let squared = dot(g, g);
         // A shape with two vanishing singular values has no direction to grow in: it stays.
-        if squared < STRAIN_VANISHING * STRAIN_VANISHING || least >= PRODUCT_BOUND {
+        let vanishing = select(STRAIN_ZERO, PRODUCT_VANISHING * PRODUCT_VANISHING, step == 0u);
+        if squared < vanishing || least >= PRODUCT_BOUND {
             break;
         }
         let next = (dot(g, d) - scale * excess) / squared * g;
