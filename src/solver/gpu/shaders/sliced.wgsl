@@ -35,8 +35,19 @@ fn main(
     let own = own_of(min(row, page.end - 1u));
     var sum = vec3f(0.0);
     let end = starts[slice + 1u] * 64u;
-    for (var at = starts[slice] * 64u; at < end; at += 64u) {
-        sum += values[at + local] * term(x[columns[at + local]], own);
+    var at = starts[slice] * 64u + local;
+    // Four entries at a time, so that a thread waits for memory once and not four times; the sum is the same.
+    for (; at + 192u < end; at += 256u) {
+        let places = vec4u(columns[at], columns[at + 64u], columns[at + 128u], columns[at + 192u]);
+        let factors = vec4f(values[at], values[at + 64u], values[at + 128u], values[at + 192u]);
+        let others = array(x[places.x], x[places.y], x[places.z], x[places.w]);
+        sum += factors.x * term(others[0], own);
+        sum += factors.y * term(others[1], own);
+        sum += factors.z * term(others[2], own);
+        sum += factors.w * term(others[3], own);
+    }
+    for (; at < end; at += 64u) {
+        sum += values[at] * term(x[columns[at]], own);
     }
     let is_row = local < ROWS && row < page.end;
     // The slice's number in the whole matrix, the row, whether it is this thread's, and the row of `A x`.
