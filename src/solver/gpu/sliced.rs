@@ -126,13 +126,6 @@ const RESIDUAL: Finish = Finish {
 const IMAGE: Finish =
     Finish { name: "image", of: Of::Plain, text: include_str!("shaders/image.wgsl"), accesses: &[Access::Write] };
 
-const ADDED_IMAGE: Finish = Finish {
-    name: "added image",
-    of: Of::Plain,
-    text: include_str!("shaders/added_image.wgsl"),
-    accesses: &[Access::Write],
-};
-
 const SPRINGS_RESIDUAL: Finish = Finish {
     name: "springs' residual",
     of: Of::Springs,
@@ -240,11 +233,6 @@ impl Sliced {
     /// `y = A x`, of a plain matrix; the fourth numbers of `y` stay.
     pub(super) fn image(&self, card: &Card, x: &Buffer, y: &Buffer) -> Result<Vec<Run>> {
         self.runs(card, &IMAGE, [0.0; 2], x, &[y])
-    }
-
-    /// `y = y + A x`, of a plain matrix; the fourth numbers of `y` stay.
-    pub(super) fn add_image(&self, card: &Card, x: &Buffer, y: &Buffer) -> Result<Vec<Run>> {
-        self.runs(card, &ADDED_IMAGE, [0.0; 2], x, &[y])
     }
 
     /// `y = b − A x`, of springs; the fourth numbers of `y` become those of `b`.
@@ -486,22 +474,17 @@ pub(super) mod tests {
             let sliced = Sliced::new(&card, "a matrix", &matrix).unwrap();
             lanes_met.push(sliced.lanes);
             let [x, b] = std::array::from_fn(|_| random.vector(rows));
-            let [on_x, on_b, image, sum] = [&x, &b, &b, &b].map(|values| card.buffer("a vector", values).unwrap());
+            let [on_x, on_b, image] = [&x, &b, &b].map(|values| card.buffer("a vector", values).unwrap());
             let residual = room(&card, rows);
-            let all = [
-                sliced.residual(&card, &on_b, &on_x, &residual),
-                sliced.image(&card, &on_x, &image),
-                sliced.add_image(&card, &on_x, &sum),
-            ];
+            let all = [sliced.residual(&card, &on_b, &on_x, &residual), sliced.image(&card, &on_x, &image)];
             all.into_iter().for_each(|runs| card.submit(&runs.unwrap()));
-            let found: Vec<Vec<Four>> = card.read(&[&residual, &image, &sum].map(|buffer| (buffer, rows))).unwrap();
+            let found: Vec<Vec<Four>> = card.read(&[(&residual, rows), (&image, rows)]).unwrap();
             let of_b = |i: usize, lane: usize| f64::from(b[i][lane]);
             let what = |what: &str| format!("{what}, {rows} rows of up to {most}");
             check(&matrix, &x, &found[0], |i, lane, sum| of_b(i, lane) - sum, &what("b − A x"));
             check(&matrix, &x, &found[1], |_, _, sum| sum, &what("A x"));
-            check(&matrix, &x, &found[2], |i, lane, sum| of_b(i, lane) + sum, &what("y + A x"));
             assert!(found[0].iter().all(|y| y[3] == 0.0));
-            assert!(found[1].iter().chain(&found[2]).zip(b.iter().chain(&b)).all(|(y, b)| y[3] == b[3]));
+            assert!(found[1].iter().zip(&b).all(|(y, b)| y[3] == b[3]));
         }
         lanes_met.sort_unstable();
         lanes_met.dedup();
@@ -630,7 +613,7 @@ pub(super) mod tests {
             let plain = Sliced::new(&card, "a matrix", &matrix).unwrap();
             let springs = Sliced::springs(&card, "a matrix", &matrix).unwrap();
             let [x, y, z] = std::array::from_fn(|_| card.buffer("a vector", &random.vector(3001)).unwrap());
-            card.submit(&plain.add_image(&card, &x, &y).unwrap());
+            card.submit(&plain.image(&card, &x, &y).unwrap());
             card.submit(&springs.springs_residual(&card, &x, &y, &z).unwrap());
             let bits = |y: &Four| y.map(f32::to_bits);
             let found: Vec<Vec<Four>> = card.read(&[(&y, 3001), (&z, 3001)]).unwrap();
