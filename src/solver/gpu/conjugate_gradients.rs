@@ -313,6 +313,44 @@ mod tests {
         assert!(found[MOST - 1] < 4e-3);
     }
 
+    /// Springs as in [`grid`], and a stiffness of 1 against bending along both axes.
+    fn plate(n: u32) -> SymmetricMatrix {
+        let lines = move |visit: &mut dyn FnMut([u32; 3])| {
+            for i in 0..n * n {
+                for (stride, place) in [(1, i % n), (n, i / n)] {
+                    if place > 0 && place + 1 < n {
+                        visit([i - stride, i, i + stride]);
+                    }
+                }
+            }
+        };
+        let pairs = [(0, 1), (1, 2), (0, 2)];
+        let each = |report: &mut dyn FnMut(u32, u32)| {
+            lines(&mut |line| pairs.iter().for_each(|(a, b)| report(line[*a], line[*b])));
+            (1..n * n).for_each(|i| report(i, i - 1));
+            (n..n * n).for_each(|i| report(i, i - n));
+        };
+        let mut plate = SymmetricMatrix::with_pattern((n * n) as usize, each).unwrap();
+        grid([n, n, 1], 1.0, 1.0).visit(|i, j, value| assert!(plate.add(i, j, value)));
+        // The square of a − 2 b + c.
+        lines(&mut |[a, b, c]| {
+            for (i, j, value) in [(a, a, 1.0), (b, b, 4.0), (c, c, 1.0), (a, b, -2.0), (b, c, -2.0), (a, c, 1.0)] {
+                assert!(plate.add(i, j, value));
+            }
+        });
+        plate
+    }
+
+    #[test]
+    fn plates_are_solved_in_as_many_iterations_as_on_the_processor() {
+        let Some(card) = card(0) else { return };
+        let [found, expected] = errors_of_both(&card, &plate(100));
+        let [own, other] = [&found, &expected].map(|errors| count(errors, 1e-4));
+        println!("{own} iterations, {other} on the processor");
+        assert!(own <= other && other < MOST, "{found:?} instead of {expected:?}");
+        assert!(found[MOST - 1] < 1e-4);
+    }
+
     #[test]
     fn iterates_and_progress_are_the_processors_where_sums_are_made_in_parts() {
         let Some(card) = card(0) else { return };
