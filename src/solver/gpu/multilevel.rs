@@ -4,7 +4,9 @@
 //! so that this becomes equal numbers, and the matrix springs (`sliced.rs`). The smoother then divides by the diagonal, whose
 //! inverse is the fourth number of every right-hand side.
 //!
-//! Smoothing from zero is a polynomial of the matrix with two terms, and so one pass over it. The last level is solved with the
+//! Smoothing from zero is a polynomial of the matrix with two terms, and so one pass over it. The first step of smoothing after
+//! the next level's correction `P e` asks for `b − A (x + P e)`, of which `b − A x` is known and `A P` a matrix of few entries,
+//! made beforehand. The last level is solved with the
 //! inverse of its Cholesky factor `L`, as `x = Wᵀ W b` with `W = L⁻¹`: rounded to single precision that is still symmetric
 //! and positive, which a rounded inverse is not where the matrix is near to singular, and round-off stays along the vectors
 //! that the matrix takes near to 0.
@@ -29,11 +31,11 @@ pub(super) struct Multilevel {
 struct Level {
     matrix: Sliced,
     smoother: Smoother,
-    /// From the next level to this and back; none on the last.
+    /// From the next level to this, with the matrix's image of it, and back; none on the last.
     transfer: Option<[Sliced; 2]>,
     /// The right-hand side and the solution; none on the first level, whose vectors are the caller's.
     own: Option<[Buffer; 2]>,
-    /// The residual or the smoother's change, and the solution after every other step.
+    /// The residual or the smoother's change, and the solution before the last step.
     change: Buffer,
     next: Buffer,
 }
@@ -116,12 +118,13 @@ fn add_cycle(
     if let (Some([prolongation, restriction]), Some(next)) = (&fine.transfer, coarser.first())
         && let Some([next_b, next_x]) = &next.own
     {
-        runs.extend(fine.smoothed_from_zero(card, b, x)?);
-        runs.extend(fine.matrix.springs_residual(card, b, x, &fine.change)?);
+        runs.extend(fine.smoothed_from_zero(card, b, &fine.next)?);
+        runs.extend(fine.matrix.springs_residual(card, b, &fine.next, &fine.change)?);
         runs.extend(restriction.image(card, &fine.change, next_b)?);
         add_cycle(card, coarser, coarsest, [next_b, next_x], runs)?;
-        runs.extend(prolongation.add_image(card, next_x, x)?);
-        runs.extend(fine.smoothed(card, b, x)?);
+        let factor = 1.0 / fine.smoother.middle;
+        runs.extend(prolongation.corrected(card, factor, [next_x, &fine.change, &fine.next])?);
+        runs.extend(fine.second_step(card, b, x)?);
     } else if let Some([inverse, transposed]) = coarsest {
         runs.extend(inverse.image(card, b, &fine.next)?);
         runs.extend(transposed.image(card, &fine.next, x)?);
@@ -147,8 +150,9 @@ impl Level {
             (Some((prolongation, _)), Some(next_unit)) => {
                 let mut prolongation = prolongation.clone();
                 prolongation.map(|i, j, value| next_unit[j] / unit[i] * value);
+                let image = matrix.times(&prolongation);
                 Some([
-                    Sliced::new(card, "a prolongation of the multigrid cycle", &prolongation)?,
+                    Sliced::prolongation(card, "a prolongation of the multigrid cycle", &prolongation, &image)?,
                     Sliced::new(card, "a restriction of the multigrid cycle", &prolongation.transposed())?,
                 ])
             }
@@ -181,10 +185,16 @@ impl Level {
 
     /// Two steps from `x`.
     fn smoothed(&self, card: &Card, b: &Buffer, x: &Buffer) -> Result<Vec<Run>> {
-        let Smoother { middle, keep, factor } = self.smoother;
+        let middle = self.smoother.middle;
         let mut runs = self.matrix.chebyshev(card, [0.0, 1.0 / middle], [b, x, &self.change, &self.next])?;
-        runs.extend(self.matrix.chebyshev(card, [keep, factor], [b, &self.next, &self.change, x])?);
+        runs.extend(self.second_step(card, b, x)?);
         Ok(runs)
+    }
+
+    /// The second of two steps, to `x` from what the first one made.
+    fn second_step(&self, card: &Card, b: &Buffer, x: &Buffer) -> Result<Vec<Run>> {
+        let Smoother { keep, factor, .. } = self.smoother;
+        self.matrix.chebyshev(card, [keep, factor], [b, &self.next, &self.change, x])
     }
 }
 

@@ -27,7 +27,7 @@ const SLICED: &str = include_str!("shaders/sliced.wgsl");
 const JOINED: &str = include_str!("shaders/joined.wgsl");
 
 /// The same where each row has a thread of its own.
-const ALONE: &str = "fn joined(local: u32, part: vec3f) -> vec3f { return part; }\n";
+const ALONE: &str = "fn joined(local: u32, part: Sum) -> Sum { return part; }\n";
 
 /// What the terms of a product are.
 const PLAIN: &str = include_str!("shaders/plain.wgsl");
@@ -35,8 +35,17 @@ const SPRINGS: &str = concat!("fn taken(v: vec4f) -> vec3f { return v.xyz; }\n",
 const SCALED_SPRINGS: &str =
     concat!("fn taken(v: vec4f) -> vec3f { return v.w * v.xyz; }\n", include_str!("shaders/springs.wgsl"));
 
+const TWO: &str = include_str!("shaders/two.wgsl");
+
+/// What entries and sums are, of one product and of two.
+const ONE_SUM: &str = "alias Value = f32;\nalias Sum = vec3f;\n";
+const TWO_SUMS: &str = "alias Value = vec2f;\nalias Sum = mat2x3f;\n";
+
 /// Threads that fill a large card: with fewer rows than this, threads share rows.
 const FULL_CARD: usize = 1 << 17;
+
+/// Columns of slices in a page, at most: places of entries are numbers of 32 bits.
+const MOST_COLUMNS: u64 = (u32::MAX / GROUP) as u64;
 
 /// A thread that shares a row has so many entries of it at least, on average; else adding up costs more than it saves.
 const LEAST_SHARE: usize = 4;
@@ -44,8 +53,9 @@ const LEAST_SHARE: usize = 4;
 /// Threads that share a row, at most.
 const MOST_LANES: usize = 16;
 
-/// A sparse matrix on the card.
+/// A sparse matrix on the card, or two.
 pub(super) struct Sliced {
+    has_two: bool,
     pages: Vec<Page>,
     row_count: usize,
     /// Threads that share a row: a power of two.
@@ -80,7 +90,7 @@ pub(super) struct Finish {
     pub(super) name: &'static str,
     pub(super) of: Of,
     pub(super) text: &'static str,
-    /// What it binds, from 5 on for plain matrices and from 6 on for springs.
+    /// What it binds, from 6 on for springs and else from 5 on.
     pub(super) accesses: &'static [Access],
 }
 
@@ -93,6 +103,17 @@ pub(super) enum Of {
     Springs,
     /// Springs and `x`, each entry times its fourth number.
     ScaledSprings,
+    /// Two matrices and `x`.
+    Two,
+}
+
+/// How a matrix is kept.
+#[derive(Clone, Copy)]
+enum Kind<'a> {
+    Plain,
+    Springs,
+    /// With this one, which has no entry where the first has none.
+    With(&'a SparseRows),
 }
 
 const RESIDUAL: Finish = Finish {
@@ -104,13 +125,6 @@ const RESIDUAL: Finish = Finish {
 
 const IMAGE: Finish =
     Finish { name: "image", of: Of::Plain, text: include_str!("shaders/image.wgsl"), accesses: &[Access::Write] };
-
-const ADDED_IMAGE: Finish = Finish {
-    name: "added image",
-    of: Of::Plain,
-    text: include_str!("shaders/added_image.wgsl"),
-    accesses: &[Access::Write],
-};
 
 const SPRINGS_RESIDUAL: Finish = Finish {
     name: "springs' residual",
@@ -133,13 +147,20 @@ const CHEBYSHEV: Finish = Finish {
     accesses: &[Access::Read, Access::Write, Access::Write],
 };
 
+const CORRECTED: Finish = Finish {
+    name: "corrected",
+    of: Of::Two,
+    text: include_str!("shaders/corrected.wgsl"),
+    accesses: &[Access::Write, Access::Write],
+};
+
 impl Sliced {
     /// Copies `matrix` to the card; `name` is what errors call it.
     ///
     /// # Errors
     /// Status `BackendUnavailable` if the card has no room, `BackendFailed` if it was lost.
     pub(super) fn new(card: &Card, name: &str, matrix: &SparseRows) -> Result<Self> {
-        Self::of_kind(card, name, matrix, false)
+        Self::of_kind(card, name, matrix, Kind::Plain)
     }
 
     /// The same as springs: for a square matrix that takes equal numbers near to 0.
@@ -147,18 +168,33 @@ impl Sliced {
     /// # Errors
     /// As [`Self::new`].
     pub(super) fn springs(card: &Card, name: &str, matrix: &SparseRows) -> Result<Self> {
-        Self::of_kind(card, name, matrix, true)
+        Self::of_kind(card, name, matrix, Kind::Springs)
     }
 
-    fn of_kind(card: &Card, name: &str, matrix: &SparseRows, is_springs: bool) -> Result<Self> {
+    /// A prolongation `P` from the next level, and `A P`: two matrices whose products are made at once.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(super) fn prolongation(card: &Card, name: &str, matrix: &SparseRows, image: &SparseRows) -> Result<Self> {
+        Self::of_kind(card, name, image, Kind::With(matrix))
+    }
+
+    fn of_kind(card: &Card, name: &str, matrix: &SparseRows, kind: Kind<'_>) -> Result<Self> {
         let row_count = matrix.row_count();
-        let lengths: Vec<usize> = (0..row_count).map(|i| entries(matrix, i, is_springs).count()).collect();
+        let mut row = Vec::new();
+        let mut length = |i: usize| {
+            read_row(matrix, kind, i, &mut row);
+            row.len()
+        };
+        let lengths: Vec<usize> = (0..row_count).map(&mut length).collect();
         let lanes = lanes(row_count, lengths.iter().sum());
         let width = |slice: &[usize]| slice.iter().max().map_or(0, |longest| longest.div_ceil(lanes));
         let slice_rows = GROUP as usize / lanes;
         let widths: Vec<usize> = lengths.chunks(slice_rows).map(width).collect();
         // Columns of a slice that one binding holds.
-        let most = (card.binding_bytes() / (u64::from(GROUP) * size_of::<u32>() as u64)) as usize;
+        let has_two = matches!(kind, Kind::With(_));
+        let entry_bytes = if has_two { size_of::<[f32; 2]>() } else { size_of::<f32>() };
+        let most = (card.binding_bytes() / u64::from(GROUP) / entry_bytes as u64).min(MOST_COLUMNS) as usize;
         let mut pages = Vec::new();
         let mut first = 0;
         while first < widths.len() {
@@ -170,10 +206,10 @@ impl Sliced {
             // A slice that is too long by itself is left to the card to refuse.
             let count = widths[first..].iter().take_while(fits).count().max(1);
             let rows = [first * slice_rows, ((first + count) * slice_rows).min(row_count)];
-            pages.push(Page::new(card, name, matrix, rows, &widths[first..first + count], lanes, is_springs)?);
+            pages.push(Page::new(card, name, matrix, rows, &widths[first..first + count], lanes, kind)?);
             first += count;
         }
-        Ok(Self { pages, row_count, lanes })
+        Ok(Self { has_two, pages, row_count, lanes })
     }
 
     /// The number of rows.
@@ -199,12 +235,7 @@ impl Sliced {
         self.runs(card, &IMAGE, [0.0; 2], x, &[y])
     }
 
-    /// `y = y + A x`, of a plain matrix; the fourth numbers of `y` stay.
-    pub(super) fn add_image(&self, card: &Card, x: &Buffer, y: &Buffer) -> Result<Vec<Run>> {
-        self.runs(card, &ADDED_IMAGE, [0.0; 2], x, &[y])
-    }
-
-    /// `y = b − A x`, of springs.
+    /// `y = b − A x`, of springs; the fourth numbers of `y` become those of `b`.
     pub(super) fn springs_residual(&self, card: &Card, b: &Buffer, x: &Buffer, y: &Buffer) -> Result<Vec<Run>> {
         self.runs(card, &SPRINGS_RESIDUAL, [0.0; 2], x, &[b, y])
     }
@@ -233,6 +264,13 @@ impl Sliced {
         self.runs(card, &CHEBYSHEV, factors, x, &[b, change, next])
     }
 
+    /// Where [`Self::prolongation`] takes the next level's solution `e`, and the first step of Chebyshev's iteration from
+    /// there: with `change` being `b − A y`, `y = y + P e`, then `change = factor D (change − A P e)` and `y = y + change`. `D`
+    /// is the inverse of the diagonal, and in the fourth numbers of `change`.
+    pub(super) fn corrected(&self, card: &Card, factor: f64, [e, change, y]: [&Buffer; 3]) -> Result<Vec<Run>> {
+        self.runs(card, &CORRECTED, [0.0, factor], e, &[change, y])
+    }
+
     /// A run for each page: `finish` with the factors `[keep, factor]` and what it binds.
     pub(super) fn runs(
         &self,
@@ -245,21 +283,22 @@ impl Sliced {
         let name = format!("sliced {} {}", finish.name, self.lanes);
         let lanes = format!("const LANES = {}u;\n", self.lanes);
         let joined = if self.lanes == 1 { ALONE } else { JOINED };
-        let (terms, own_count) = match finish.of {
-            Of::Plain => (PLAIN, 4),
-            Of::Springs => (SPRINGS, 5),
-            Of::ScaledSprings => (SCALED_SPRINGS, 5),
+        let (sums, terms, own_count) = match finish.of {
+            Of::Plain => (ONE_SUM, PLAIN, 4),
+            Of::Springs => (ONE_SUM, SPRINGS, 5),
+            Of::ScaledSprings => (ONE_SUM, SCALED_SPRINGS, 5),
+            Of::Two => (TWO_SUMS, TWO, 4),
         };
         let mut accesses = vec![Access::Uniform];
         accesses.resize(1 + own_count, Access::Read);
         accesses.extend(finish.accesses);
-        let kernel = card.kernel(&name, &[&lanes, joined, SLICED, terms, finish.text], &accesses)?;
+        let kernel = card.kernel(&name, &[&lanes, sums, joined, SLICED, terms, finish.text], &accesses)?;
         let run = |page: &Page| {
             let (keep, factor) = (keep as f32, factor as f32);
             let numbers = card.uniform(&Numbers { first: page.first as u32, end: page.end as u32, keep, factor });
             let mut buffers = vec![&numbers, &page.starts, &page.columns, &page.values, x];
             buffers.extend(&page.row_sums);
-            if buffers.len() != 1 + own_count {
+            if buffers.len() != 1 + own_count || self.has_two != (finish.of == Of::Two) {
                 return Err(internal("a product is not meant for this kind of matrix"));
             }
             buffers.extend(bound);
@@ -278,7 +317,7 @@ impl Page {
         [first, end]: [usize; 2],
         widths: &[usize],
         lanes: usize,
-        is_springs: bool,
+        kind: Kind<'_>,
     ) -> Result<Self> {
         let group = GROUP as usize;
         let slice_rows = group / lanes;
@@ -288,39 +327,53 @@ impl Page {
             Some(*sum)
         }));
         let count = widths.iter().sum::<usize>() * group;
-        let (mut columns, mut values) = (vec![0_u32; count], vec![0.0_f32; count]);
+        let (mut columns, mut values) = (vec![0_u32; count], vec![[0.0_f32; 2]; count]);
+        let mut row = Vec::new();
         for i in first..end {
             let (slice, r) = ((i - first) / slice_rows, (i - first) % slice_rows);
             let place =
                 |entry: usize| (starts[slice] as usize + entry / lanes) * group + entry % lanes * slice_rows + r;
-            let mut length = 0;
-            for (entry, (column, value)) in entries(matrix, i, is_springs).enumerate() {
-                (columns[place(entry)], values[place(entry)]) = (column as u32, value as f32);
-                length = entry + 1;
+            read_row(matrix, kind, i, &mut row);
+            for (entry, (column, value)) in row.iter().enumerate() {
+                (columns[place(entry)], values[place(entry)]) = (*column, *value);
             }
             // Padding reads what the row reads anyway.
-            let padding = entries(matrix, i, is_springs).next().map_or(0, |(column, _)| column as u32);
-            (length..widths[slice] * lanes).for_each(|entry| columns[place(entry)] = padding);
+            let padding = row.first().map_or(0, |(column, _)| *column);
+            (row.len()..widths[slice] * lanes).for_each(|entry| columns[place(entry)] = padding);
         }
-        let row_sum = |i: usize| matrix.row(i).map(|(_, value)| value).sum::<f64>() as f32;
-        let row_sums = match is_springs {
-            true => Some(card.buffer(name, &(first..end).map(row_sum).collect::<Vec<_>>())?),
-            false => None,
+        let (starts, columns) = (card.buffer(name, &starts)?, card.buffer(name, &columns)?);
+        let values = match kind {
+            Kind::With(_) => card.buffer(name, &values)?,
+            _ => card.buffer(name, &values.iter().map(|[value, _]| *value).collect::<Vec<_>>())?,
         };
-        Ok(Self {
-            row_sums,
-            first,
-            end,
-            starts: card.buffer(name, &starts)?,
-            columns: card.buffer(name, &columns)?,
-            values: card.buffer(name, &values)?,
-        })
+        let row_sum = |i: usize| matrix.row(i).map(|(_, value)| value).sum::<f64>() as f32;
+        let row_sums = match kind {
+            Kind::Springs => Some(card.buffer(name, &(first..end).map(row_sum).collect::<Vec<_>>())?),
+            _ => None,
+        };
+        Ok(Self { first, end, starts, columns, values, row_sums })
     }
 }
 
-/// The columns and values of row `i` that are kept: of springs the diagonal multiplies no difference.
-fn entries(matrix: &SparseRows, i: usize, is_springs: bool) -> impl Iterator<Item = (usize, f64)> + '_ {
-    matrix.row(i).filter(move |(column, _)| !is_springs || *column != i)
+/// Puts the columns and values of row `i` that are kept into `row`.
+fn read_row(matrix: &SparseRows, kind: Kind<'_>, i: usize, row: &mut Vec<(u32, [f32; 2])>) {
+    row.clear();
+    let own = matrix.row(i).map(|(column, value)| (column as u32, value as f32));
+    match kind {
+        Kind::Plain => row.extend(own.map(|(column, value)| (column, [value, 0.0]))),
+        // The diagonal multiplies no difference.
+        Kind::Springs => {
+            row.extend(own.filter(|(column, _)| *column as usize != i).map(|(column, value)| (column, [value, 0.0])));
+        }
+        Kind::With(first) => {
+            // Columns ascend in both.
+            let mut others = first.row(i).peekable();
+            row.extend(own.map(|(column, value)| {
+                let other = others.next_if(|(other, _)| *other == column as usize);
+                (column, [other.map_or(0.0, |(_, value)| value as f32), value])
+            }));
+        }
+    }
 }
 
 /// Threads that share each of `row_count` rows with `entry_count` entries in all. It depends on the matrix alone.
@@ -421,22 +474,17 @@ pub(super) mod tests {
             let sliced = Sliced::new(&card, "a matrix", &matrix).unwrap();
             lanes_met.push(sliced.lanes);
             let [x, b] = std::array::from_fn(|_| random.vector(rows));
-            let [on_x, on_b, image, sum] = [&x, &b, &b, &b].map(|values| card.buffer("a vector", values).unwrap());
+            let [on_x, on_b, image] = [&x, &b, &b].map(|values| card.buffer("a vector", values).unwrap());
             let residual = room(&card, rows);
-            let all = [
-                sliced.residual(&card, &on_b, &on_x, &residual),
-                sliced.image(&card, &on_x, &image),
-                sliced.add_image(&card, &on_x, &sum),
-            ];
+            let all = [sliced.residual(&card, &on_b, &on_x, &residual), sliced.image(&card, &on_x, &image)];
             all.into_iter().for_each(|runs| card.submit(&runs.unwrap()));
-            let found: Vec<Vec<Four>> = card.read(&[&residual, &image, &sum].map(|buffer| (buffer, rows))).unwrap();
+            let found: Vec<Vec<Four>> = card.read(&[(&residual, rows), (&image, rows)]).unwrap();
             let of_b = |i: usize, lane: usize| f64::from(b[i][lane]);
             let what = |what: &str| format!("{what}, {rows} rows of up to {most}");
             check(&matrix, &x, &found[0], |i, lane, sum| of_b(i, lane) - sum, &what("b − A x"));
             check(&matrix, &x, &found[1], |_, _, sum| sum, &what("A x"));
-            check(&matrix, &x, &found[2], |i, lane, sum| of_b(i, lane) + sum, &what("y + A x"));
             assert!(found[0].iter().all(|y| y[3] == 0.0));
-            assert!(found[1].iter().chain(&found[2]).zip(b.iter().chain(&b)).all(|(y, b)| y[3] == b[3]));
+            assert!(found[1].iter().zip(&b).all(|(y, b)| y[3] == b[3]));
         }
         lanes_met.sort_unstable();
         lanes_met.dedup();
@@ -474,7 +522,34 @@ pub(super) mod tests {
             check(&matrix, &x, &found[3], |i, k, sum| of(&x, i, k) + 0.75 * pull(i, k, sum), &what("the next x"));
             let later = |i, k, sum| 0.5 * of(&change, i, k) + 0.75 * pull(i, k, sum);
             check(&matrix, &x, &found[4], later, &what("a later change"));
-            assert!(found.iter().flatten().all(|y| y[3] == 0.0));
+            assert!(found[0].iter().zip(&b).all(|(y, b)| y[3] == b[3]));
+            assert!(found[1..].iter().flatten().all(|y| y[3] == 0.0));
+        }
+    }
+
+    #[test]
+    fn two_products_are_those_in_double_precision() {
+        let Some(card) = card(0) else { return };
+        for (rows, most) in sizes() {
+            let mut random = Random(rows as u64 + most);
+            let columns = rows.div_ceil(3);
+            let image = matrix(&mut random, rows, columns, most);
+            // Some entries of the image, with other values.
+            let kept = |i: usize| image.row(i).filter(move |(j, _)| (i + j).is_multiple_of(3));
+            let row = |i: usize| kept(i).map(|(j, value)| (j as u32, 0.5 - value)).collect();
+            let prolongation = SparseRows::from_rows(columns, (0..rows).map(row));
+            let sliced = Sliced::prolongation(&card, "two matrices", &prolongation, &image).unwrap();
+            let e = random.vector(columns);
+            let [residual, y] = std::array::from_fn(|_| random.vector(rows));
+            let [on_e, change, on_y] = [&e, &residual, &y].map(|values| card.buffer("a vector", values).unwrap());
+            card.submit(&sliced.corrected(&card, 0.75, [&on_e, &change, &on_y]).unwrap());
+            let found: Vec<Vec<Four>> = card.read(&[(&change, rows), (&on_y, rows)]).unwrap();
+            let of = |values: &[Four], i: usize, k: usize| f64::from(values[i][k]);
+            let expected = |i, k, sum| 0.75 * of(&residual, i, 3) * (of(&residual, i, k) - sum);
+            let what = |what: &str| format!("{what}, {rows} rows of up to {most}");
+            check(&image, &e, &found[0], expected, &what("the change"));
+            let moved = |i, k, sum| of(&y, i, k) + sum + of(&found[0], i, k);
+            check(&prolongation, &e, &found[1], moved, &what("the next y"));
         }
     }
 
@@ -510,6 +585,9 @@ pub(super) mod tests {
         assert!(plain.springs_residual(&card, &x, &x, &x).is_err());
         let springs = Sliced::springs(&card, "a matrix", &matrix).unwrap();
         assert!(springs.image(&card, &x, &x).is_err());
+        assert!(plain.corrected(&card, 1.0, [&x, &x, &x]).is_err());
+        let two = Sliced::prolongation(&card, "two matrices", &matrix, &matrix).unwrap();
+        assert!(two.image(&card, &x, &x).is_err());
     }
 
     #[test]
@@ -535,7 +613,7 @@ pub(super) mod tests {
             let plain = Sliced::new(&card, "a matrix", &matrix).unwrap();
             let springs = Sliced::springs(&card, "a matrix", &matrix).unwrap();
             let [x, y, z] = std::array::from_fn(|_| card.buffer("a vector", &random.vector(3001)).unwrap());
-            card.submit(&plain.add_image(&card, &x, &y).unwrap());
+            card.submit(&plain.image(&card, &x, &y).unwrap());
             card.submit(&springs.springs_residual(&card, &x, &y, &z).unwrap());
             let bits = |y: &Four| y.map(f32::to_bits);
             let found: Vec<Vec<Four>> = card.read(&[(&y, 3001), (&z, 3001)]).unwrap();

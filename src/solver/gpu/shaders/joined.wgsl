@@ -1,8 +1,8 @@
 // The sum of the `LANES` threads that share a row, for the first of them.
 
-var<workgroup> parts: array<vec3f, 64>;
+var<workgroup> parts: array<Sum, 64>;
 
-fn joined(local: u32, part: vec3f) -> vec3f {
+fn joined(local: u32, part: Sum) -> Sum {
     parts[local] = part;
     workgroupBarrier();
     var sum = part;

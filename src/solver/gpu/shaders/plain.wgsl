@@ -4,8 +4,8 @@ fn own_of(row: u32) -> vec3f {
     return vec3f(0.0);
 }
 
-fn term(other: vec4f, own: vec3f) -> vec3f {
-    return other.xyz;
+fn term(value: f32, other: vec4f, own: vec3f) -> vec3f {
+    return value * other.xyz;
 }
 
 fn whole(sum: vec3f, row: u32, own: vec3f) -> vec3f {

@@ -9,8 +9,8 @@ fn own_of(row: u32) -> vec3f {
     return taken(x[row]);
 }
 
-fn term(other: vec4f, own: vec3f) -> vec3f {
-    return taken(other) - own;
+fn term(value: f32, other: vec4f, own: vec3f) -> vec3f {
+    return value * (taken(other) - own);
 }
 
 fn whole(sum: vec3f, row: u32, own: vec3f) -> vec3f {
