@@ -1,6 +1,8 @@
 //! The graphics card against the processor. Runs on any adapter, the software one included.
 
 mod kernels;
+#[path = "../programs/mod.rs"]
+mod programs;
 
 use shapeop::solver::{BackendOptions, backend_info};
 
@@ -9,7 +11,7 @@ fn has_adapter() -> bool {
     match backend_info(&BackendOptions::default()) {
         Ok(_) => true,
         Err(error) => {
-            eprintln!("LEFT OUT: {error}");
+            programs::leave_out(&format!("iterations on a graphics card: {error}"));
             false
         }
     }
