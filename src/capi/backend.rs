@@ -6,11 +6,11 @@ use std::ptr;
 use std::sync::{Mutex, PoisonError};
 
 use super::arguments::text;
-use super::handles::{Handle, ShapeOpSolver};
+use super::handles::{self, Handle, ShapeOpSolver};
 use super::structs::{self, SizedStruct};
-use super::{code, guard, guard_free, guard_read, messages, number, shapeop_err};
+use super::{code, guard, guard_free, guard_named, guard_read, messages, number, shapeop_err};
 use crate::error::{Error, Result, Status};
-use crate::solver::{AdapterKind, Backend, BackendInfo, BackendOptions, release_backend};
+use crate::solver::{AdapterKind, Backend, BackendInfo, BackendOptions, Solver, release_backend};
 
 /// What carries out the iterations of a solve: see `shapeop_setBackend`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,7 +143,11 @@ pub unsafe extern "C" fn shapeop_backendInfo(op: *mut ShapeOpSolver, out: *mut s
 #[unsafe(no_mangle)]
 pub extern "C" fn shapeop_backendReason(op: *mut ShapeOpSolver) -> *const c_char {
     let handle = Handle::new(op);
-    let reason = guard_read(op, |_| Ok(messages::backend_reason(handle)));
+    // It lies beside the solver, not in it: there is nothing to wait for.
+    let reason = guard_named(handle, || {
+        handles::find::<Solver>(handle)?;
+        Ok(messages::backend_reason(handle))
+    });
     reason.map_or(ptr::null(), messages::show_backend)
 }
 
