@@ -247,6 +247,14 @@ typedef enum shapeop_err {
      * What is asked for lies outside the surface, or outside the values of a function.
      */
     SO_OUT_OF_DOMAIN = 39,
+    /**
+     * There is no graphics card to solve on, or not enough of it; or the library was built without the feature `gpu`.
+     */
+    SO_BACKEND_UNAVAILABLE = 40,
+    /**
+     * The graphics card was lost or refused work; the points are those of the last read-back.
+     */
+    SO_BACKEND_FAILED = 41,
 } shapeop_err;
 #endif
 
@@ -301,6 +309,11 @@ typedef enum shapeop_outcome {
      * Hard constraints contradict each other; `shapeop_getConflicts` names a small set, and the points meet the others.
      */
     SO_OUTCOME_INFEASIBLE = 6,
+    /**
+     * The graphics card was lost or refused work; the points are those of the last read-back. `shapeop_lastError` says
+     * what happened.
+     */
+    SO_OUTCOME_BACKEND_FAILED = 7,
 } shapeop_outcome;
 
 /**
@@ -320,6 +333,51 @@ typedef enum shapeop_linear_solver {
      */
     SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS = 2,
 } shapeop_linear_solver;
+
+/**
+ * What carries out the iterations of a solve: see `shapeop_setBackend`.
+ */
+typedef enum shapeop_backend {
+    /**
+     * The default: the processor, in double precision.
+     */
+    SO_BACKEND_CPU = 0,
+    /**
+     * The graphics card, in single precision; what a tolerance asks for beyond that the processor finishes.
+     */
+    SO_BACKEND_GPU = 1,
+    /**
+     * The card where there is one that is faster on the model at hand, which the first iterations measure; else, and
+     * where anything is missing, the processor.
+     */
+    SO_BACKEND_AUTOMATIC = 2,
+} shapeop_backend;
+
+/**
+ * What kind of adapter it is, the fastest first.
+ */
+typedef enum shapeop_adapter_kind {
+    /**
+     * A card with memory of its own.
+     */
+    SO_ADAPTER_DISCRETE = 0,
+    /**
+     * A part of the processor that shares its memory.
+     */
+    SO_ADAPTER_INTEGRATED = 1,
+    /**
+     * A card that a virtual machine lends.
+     */
+    SO_ADAPTER_VIRTUAL = 2,
+    /**
+     * Not known.
+     */
+    SO_ADAPTER_OTHER = 3,
+    /**
+     * A program that behaves like a card: for tests.
+     */
+    SO_ADAPTER_SOFTWARE = 4,
+} shapeop_adapter_kind;
 
 /**
  * Why smoothing stopped.
@@ -1017,6 +1075,31 @@ typedef struct shapeop_solve_report {
      * Iterations of conjugate gradients in all linear solves of this call; 0 with a factor.
      */
     unsigned int linear_iterations;
+    /**
+     * `SO_BACKEND_GPU` if the graphics card made any of the iterations, else `SO_BACKEND_CPU`. `shapeop_backendReason`
+     * says why.
+     */
+    enum shapeop_backend backend;
+    /**
+     * Those of the iterations that the card made.
+     */
+    unsigned int gpu_iterations;
+    /**
+     * The iteration after which points were read back from the card last.
+     */
+    unsigned int read_back_iteration;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * Seconds in which the card worked.
+     */
+    double gpu_seconds;
+    /**
+     * Seconds in which points went to the card and back.
+     */
+    double transfer_seconds;
 } shapeop_solve_report;
 
 /**
@@ -1113,6 +1196,48 @@ typedef struct shapeop_exploration {
      */
     double penalty;
 } shapeop_exploration;
+
+/**
+ * The graphics card that iterates, and its limits. The texts are valid as long as the library is loaded.
+ */
+typedef struct shapeop_backend_info {
+    /**
+     * In: `sizeof(shapeop_backend_info)`.
+     */
+    unsigned int struct_size;
+    /**
+     * Its kind.
+     */
+    enum shapeop_adapter_kind kind;
+    /**
+     * Workgroups at most, in one dimension of a run.
+     */
+    unsigned int group_count;
+    /**
+     * 0; a gap that keeps the doubles aligned.
+     */
+    unsigned int reserved;
+    /**
+     * Bytes of one buffer at most: a whole number.
+     */
+    double buffer_bytes;
+    /**
+     * Bytes of what one binding reaches at most, a whole number; what is larger is split.
+     */
+    double binding_bytes;
+    /**
+     * Its name.
+     */
+    const char *adapter;
+    /**
+     * The interface it is driven by, such as "vulkan".
+     */
+    const char *api;
+    /**
+     * The driver, and its version.
+     */
+    const char *driver;
+} shapeop_backend_info;
 
 /**
  * What recipes take. Start from `shapeop_defaultRecipeOptions`.
@@ -3132,7 +3257,8 @@ SHAPEOP_API enum shapeop_err shapeop_defaultSolveOptions(struct shapeop_solve_op
  * every iteration. While it runs, reading calls on `op` from it answer with the current iterate, and all other calls
  * are refused as busy. `report` is null, or its `struct_size` is set; it is written on success.
  *
- * A force along a motion that no constraint resists is the outcome `SO_OUTCOME_UNBOUNDED` of a successful call.
+ * A force along a motion that no constraint resists is the outcome `SO_OUTCOME_UNBOUNDED` of a successful call, a graphics
+ * card that was lost or refused work the outcome `SO_OUTCOME_BACKEND_FAILED`; `shapeop_lastError` says more.
  *
  * # Safety
  * `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many bytes.
@@ -3268,6 +3394,66 @@ enum shapeop_err shapeop_getSensitivities(struct ShapeOpSolver *op,
                                           int nb_points,
                                           double *squares,
                                           int nb_classes);
+
+/**
+ * Sets what carries out the iterations of the following solves; `backend` is a `shapeop_backend`, and any other number
+ * is refused. `SO_BACKEND_GPU` is refused as `SO_BACKEND_UNAVAILABLE` if there is no graphics card, or if the library
+ * was built without the feature `gpu`; `shapeop_lastError` says which. `SO_BACKEND_AUTOMATIC` is never refused.
+ * `shapeop_solve_report` says what ran, and `shapeop_backendReason` why. A refused call changes nothing.
+ */
+SHAPEOP_API enum shapeop_err shapeop_setBackend(struct ShapeOpSolver *op, int backend);
+
+/**
+ * The `shapeop_backend` that was set, or -1.
+ */
+SHAPEOP_API int shapeop_getBackend(struct ShapeOpSolver *op);
+
+/**
+ * Chooses the graphics card of the following solves, and how much of it they may use. Without the feature `gpu` it has
+ * no effect.
+ *
+ * - `adapter`: a part of its name, of any case; null or empty: any, the fastest kind first.
+ * - `binding_bytes`: bytes of one binding at most; 0: what the card allows. Less makes more and smaller runs of a large
+ *   model.
+ * - `memory_bytes`: bytes of the card that the solver may take; 0: no limit.
+ *
+ * Both are whole numbers of at least 0.
+ *
+ * # Safety
+ * `adapter` is null or ends with a zero.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_setBackendOptions(struct ShapeOpSolver *op,
+                                           const char *adapter,
+                                           double binding_bytes,
+                                           double memory_bytes);
+
+/**
+ * Describes the graphics card of the solver in `out`, whose `struct_size` must be set. Refused as
+ * `SO_BACKEND_UNAVAILABLE` if there is none, or if the library was built without the feature `gpu`. The first call takes
+ * a while: it opens the card.
+ *
+ * # Safety
+ * `out` is null, or its `struct_size` is set and it is writable for so many bytes.
+ */
+SHAPEOP_API
+enum shapeop_err shapeop_backendInfo(struct ShapeOpSolver *op,
+                                     struct shapeop_backend_info *out);
+
+/**
+ * Why the last `shapeop_solveUntil` of the solver ran on the backend that its report names, in words; empty if there was
+ * none yet, null if `op` is no solver. The text is the calling thread's own copy, valid until that thread's next call of
+ * this function.
+ */
+SHAPEOP_API
+const char *shapeop_backendReason(struct ShapeOpSolver *op);
+
+/**
+ * Gives the graphics card back, with all memory that solvers have on it: for a host that needs it for something else.
+ * Solves that run on it end with `SO_OUTCOME_BACKEND_FAILED`, at the points of their last read-back; later ones open it
+ * again. Where there is nothing to give back, it succeeds and does nothing.
+ */
+SHAPEOP_API enum shapeop_err shapeop_releaseBackend(void);
 
 /**
  * Makes `op` the solver of a problem, whose JSON form `docs/problem.schema.json` states: everything in it is replaced,

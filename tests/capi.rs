@@ -104,11 +104,19 @@ fn bad_handles_are_refused_by_every_function() {
         assert_eq!(shapeop_setThreadCount(bad, 1), SO_INVALID_HANDLE);
         assert_eq!(shapeop_setAcceleration(bad, 0, 0), SO_INVALID_HANDLE);
         assert_eq!(shapeop_setLinearSolver(bad, 1), SO_INVALID_HANDLE);
+        assert_eq!(shapeop_setBackend(bad, 0), SO_INVALID_HANDLE);
+        assert!(shapeop_backendReason(bad).is_null());
+        // SAFETY: null is allowed.
+        unsafe {
+            assert_eq!(shapeop_setBackendOptions(bad, ptr::null(), 0.0, 0.0), SO_INVALID_HANDLE);
+            assert_eq!(shapeop_backendInfo(bad, ptr::null_mut()), SO_INVALID_HANDLE);
+        }
         for count in [
             shapeop_pointCount(bad),
             shapeop_constraintCount(bad),
             shapeop_forceCount(bad),
             shapeop_unconstrainedCount(bad),
+            shapeop_getBackend(bad),
             shapeop_isConstraint(bad, 0),
             shapeop_isForce(bad, 0),
             shapeop_isDegenerate(bad, 0),
@@ -375,6 +383,10 @@ extern "C" fn read_everything(progress: *const shapeop_progress, user: *mut c_vo
     assert_eq!(shapeop_setThreadCount(abi.0, 2), SO_BUSY);
     assert_eq!(shapeop_setAcceleration(abi.0, 1, 0), SO_BUSY);
     assert_eq!(shapeop_setLinearSolver(abi.0, 1), SO_BUSY);
+    assert_eq!(shapeop_setBackend(abi.0, 0), SO_BUSY);
+    // SAFETY: null is allowed.
+    assert_eq!(unsafe { shapeop_setBackendOptions(abi.0, ptr::null(), 0.0, 0.0) }, SO_BUSY);
+    assert_eq!((shapeop_getBackend(abi.0), text(shapeop_backendReason(abi.0)).as_str()), (0, ""));
     shapeop_delete(abi.0);
     assert!(abi.message().contains("busy"));
     // Another solver is not, not even inside a callback of its own, from which the first can still be read.
@@ -654,6 +666,7 @@ fn shorter_structs_mean_defaults_and_longer_ones_must_ask_for_nothing_more() {
         (offset_of!(shapeop_solve_report, energy_before), true),
         (offset_of!(shapeop_solve_report, analysis_seconds), true),
         (offset_of!(shapeop_solve_report, evaluations), true),
+        (offset_of!(shapeop_solve_report, backend), true),
         (size_of::<shapeop_solve_report>(), true),
         (size_of::<shapeop_solve_report>() + 8, true),
         (4096, true),

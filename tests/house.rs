@@ -1,7 +1,8 @@
-//! The house's rules: which module may import which, and where unsafe code may be.
+//! The house's rules: which module may import which, where unsafe code may be, and what only a feature brings.
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// What each module of the crate may import; `error` is free for all.
 const ALLOWED: [(&str, &[&str]); 8] = [
@@ -72,6 +73,30 @@ fn unsafe_code_is_only_in_capi() {
             assert!(!line.contains("unsafe"), "{file}: {line}");
         }
     }
+}
+
+/// The crates of the workspace's libraries and programs with these features of this crate.
+fn crates_with(features: &str) -> Vec<String> {
+    let mut command = Command::new(env!("CARGO"));
+    command.args(["tree", "--locked", "--workspace", "--edges", "normal", "--prefix", "none", "--features", features]);
+    let output = command.current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines().filter_map(|line| line.split_whitespace().next()).map(str::to_owned).collect()
+}
+
+#[test]
+fn only_the_feature_gpu_brings_crates_of_the_graphics_card() {
+    let of_card = |features: &str| {
+        let mut crates = crates_with(features);
+        assert!(crates.contains(&"faer".to_owned()), "{features}: the crates were not read");
+        crates.retain(|name| name.starts_with("wgpu") || name.starts_with("naga") || name == "pollster");
+        crates
+    };
+    assert_eq!(of_card(""), [""; 0]);
+    assert_eq!(of_card("shapeop/schema"), [""; 0]);
+    let with_feature = of_card("shapeop/gpu");
+    assert!(["wgpu", "naga", "pollster"].iter().all(|name| with_feature.contains(&(*name).to_owned())));
 }
 
 #[test]

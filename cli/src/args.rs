@@ -12,6 +12,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use shapeop::mesh::Format;
 use shapeop::problem::Acceleration;
 use shapeop::problem::recipes::{Anchors, Fairness, RecipeOptions};
+use shapeop::solver::Backend;
 
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Yellow.on_default().bold())
@@ -308,6 +309,30 @@ pub struct IterateArgs {
     /// Threads; 0: as many as the machine has. The result does not depend on it
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
+    /// What iterates. The report says what did, and why
+    #[arg(long, value_name = "BACKEND", value_enum, default_value = "cpu")]
+    pub backend: BackendKind,
+}
+
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum BackendKind {
+    /// The processor
+    #[default]
+    Cpu,
+    /// The graphics card; refused where there is none, and by a program that was built without the feature "gpu"
+    Gpu,
+    /// The card where it is there and faster, else the processor
+    Automatic,
+}
+
+impl From<BackendKind> for Backend {
+    fn from(kind: BackendKind) -> Self {
+        match kind {
+            BackendKind::Cpu => Self::Cpu,
+            BackendKind::Gpu => Self::Gpu,
+            BackendKind::Automatic => Self::Automatic,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

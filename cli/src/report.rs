@@ -8,7 +8,7 @@ use serde_json::Value;
 use shapeop::mesh::Mesh;
 use shapeop::mesh::measure::{Spread, displacements};
 use shapeop::problem::{Mode, Problem, Settings};
-use shapeop::solver::Outcome;
+use shapeop::solver::{Backend, Outcome};
 
 use crate::exploration::Exploration;
 use crate::plot::Measure;
@@ -42,6 +42,7 @@ pub struct Report {
     /// What acceleration tried in vain, by cause.
     pub rejections: BTreeMap<&'static str, u32>,
     pub steps: u32,
+    pub backend: Machine,
     pub seconds: Seconds,
     pub energy: BeforeAfter<f64>,
     /// The largest move of a point in the last iteration over the bounding-box diagonal.
@@ -69,6 +70,37 @@ pub struct Report {
 pub struct BeforeAfter<T> {
     pub before: T,
     pub after: T,
+}
+
+/// What iterated.
+#[derive(Serialize)]
+pub struct Machine {
+    /// `cpu`, or `gpu` if the graphics card made any of the iterations.
+    pub used: &'static str,
+    /// Why, in words.
+    pub reason: String,
+    /// The card, if it made any of the iterations.
+    pub adapter: Option<String>,
+    pub gpu_iterations: u32,
+    /// In which the card worked, and in which points went to it and back.
+    pub gpu_seconds: f64,
+    pub transfer_seconds: f64,
+}
+
+impl Machine {
+    fn of(run: &Run) -> Self {
+        let report = &run.report;
+        let is_gpu = report.backend == Backend::Gpu;
+        let card = || run.solver.backend_info().ok().map(|info| format!("{} ({}, {})", info.adapter, info.kind.text(), info.api));
+        Self {
+            used: if is_gpu { "gpu" } else { "cpu" },
+            reason: report.backend_reason.clone(),
+            adapter: if is_gpu { card() } else { None },
+            gpu_iterations: report.gpu_iterations,
+            gpu_seconds: report.gpu_seconds,
+            transfer_seconds: report.transfer_seconds,
+        }
+    }
 }
 
 /// Where the time went. The parts do not add up to the total: reading, progress and measuring are not among them.
@@ -164,6 +196,7 @@ impl Report {
                 ("line_search", rejections.line_search),
             ]),
             steps: run.steps,
+            backend: Machine::of(run),
             seconds: Seconds {
                 total: run.seconds,
                 analysis: solver_report.analysis_seconds,

@@ -8,7 +8,7 @@ use glam::DVec3;
 use serde::Serialize;
 use shapeop::mesh::Mesh;
 use shapeop::problem::{Acceleration, Mode, Problem, Settings};
-use shapeop::solver::{Outcome, Rejections, Report, SolveOptions, Solver};
+use shapeop::solver::{Backend, Outcome, Rejections, Report, SolveOptions, Solver};
 
 use crate::args::IterateArgs;
 use crate::progress::{Progress, is_interrupted};
@@ -65,11 +65,12 @@ pub fn explores(problem: &Problem) -> bool {
     has_hard || !problem.handles.is_empty() || problem.objective.is_some()
 }
 
-/// Solves `problem` with `settings`; `problem.settings` is not looked at.
-pub fn run(problem: &Problem, settings: &Settings, threads: usize, is_quiet: bool) -> Result<Run> {
+/// Solves `problem` with `settings`, on the threads and the backend of `iterate`; `problem.settings` is not looked at.
+pub fn run(problem: &Problem, settings: &Settings, iterate: &IterateArgs, is_quiet: bool) -> Result<Run> {
     let started = Instant::now();
     let mut solver = Solver::from_problem(problem)?;
-    solver.set_thread_count(threads);
+    solver.set_thread_count(iterate.threads);
+    solver.set_backend(iterate.backend.into())?;
     solver.set_acceleration(settings.acceleration, settings.acceleration_memory)?;
     let is_dynamic = problem.mode == Mode::Dynamic;
     let step_count = if is_dynamic { settings.steps } else { 1 };
@@ -106,6 +107,10 @@ pub fn run(problem: &Problem, settings: &Settings, threads: usize, is_quiet: boo
             progress.finish();
             bail!("unbounded, nothing was solved: {}", report.message);
         }
+        if report.outcome == Outcome::BackendFailed {
+            progress.finish();
+            bail!("the graphics card failed: {}", report.message);
+        }
         steps = step;
         let moved = last.iter().zip(solver.points()).map(|(last, now)| last.distance(*now)).fold(0.0, f64::max);
         history.steps.push((report.energy_after, if diagonal > 0.0 { moved / diagonal } else { moved }));
@@ -130,7 +135,8 @@ pub fn run(problem: &Problem, settings: &Settings, threads: usize, is_quiet: boo
     Ok(Run { solver, report, steps, seconds, was_interrupted: is_interrupted(), history, frames })
 }
 
-/// The report of two time steps that follow each other.
+/// The report of two time steps that follow each other. That the card made some of the iterations tells more than that it
+/// made none of the last.
 fn joined(before: Report, after: Report) -> Report {
     let (old, new) = (before.rejections, after.rejections);
     Report {
@@ -146,6 +152,10 @@ fn joined(before: Report, after: Report) -> Report {
         energy_before: before.energy_before,
         local_seconds: before.local_seconds + after.local_seconds,
         global_seconds: before.global_seconds + after.global_seconds,
+        backend: if before.backend == Backend::Gpu { before.backend } else { after.backend },
+        gpu_iterations: before.gpu_iterations.saturating_add(after.gpu_iterations),
+        gpu_seconds: before.gpu_seconds + after.gpu_seconds,
+        transfer_seconds: before.transfer_seconds + after.transfer_seconds,
         ..after
     }
 }

@@ -99,6 +99,10 @@ pub fn of_report(report: &Report) -> String {
         row(&["iterations", &report.iterations.to_string()]),
         row(&["seconds", &format!("{:.2}", report.seconds.total)]),
     ]);
+    if let Some(adapter) = &report.backend.adapter {
+        let of_card = report.backend.gpu_iterations;
+        lines.push(row(&["on the card", &format!("{of_card} of {} iterations: {adapter}", report.iterations)]));
+    }
     let lines: Vec<String> = lines.iter().map(|line| format!("  {:<12} {}", line[0], line[1])).collect();
     text + &lines.join("\n")
 }

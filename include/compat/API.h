@@ -44,7 +44,9 @@ typedef enum shapeop_err {
     SO_CURVATURE_SIGN = 36,
     SO_NOT_ORIENTABLE = 37,
     SO_INFEASIBLE = 38,
-    SO_OUT_OF_DOMAIN = 39
+    SO_OUT_OF_DOMAIN = 39,
+    SO_BACKEND_UNAVAILABLE = 40,
+    SO_BACKEND_FAILED = 41
 } shapeop_err;
 
 #endif

@@ -128,6 +128,8 @@ pub(super) struct Slot {
     state: Mutex<State>,
     /// What the last call that got hold of the object left. Locked only to copy it.
     pub(super) message: Mutex<Message>,
+    /// Why the last solve with a report ran where it did. Locked only to copy it.
+    pub(super) backend_reason: Mutex<String>,
 }
 
 /// An object, or why there is none.
@@ -141,7 +143,8 @@ pub(super) enum State {
 
 impl Slot {
     fn new(object: Object) -> Self {
-        Self { name: object.name(), state: Mutex::new(State::Alive(object)), message: Mutex::default() }
+        let (name, state) = (object.name(), Mutex::new(State::Alive(object)));
+        Self { name, state, message: Mutex::default(), backend_reason: Mutex::default() }
     }
 
     /// The state, if no other call is using it.

@@ -37,6 +37,8 @@ thread_local! {
     static LAST: RefCell<(Handle, Message)> = RefCell::new((Handle::NONE, Message::default()));
     /// The text that `shapeop_lastError` handed out.
     static SHOWN: RefCell<CString> = RefCell::default();
+    /// The reason for a backend that was handed out last.
+    static SHOWN_BACKEND: RefCell<CString> = RefCell::default();
     /// The problem that was handed out last.
     static SHOWN_PROBLEM: RefCell<CString> = RefCell::default();
     /// The text about surfaces that was handed out last.
@@ -86,6 +88,24 @@ pub(super) fn last_status(handle: Handle) -> Option<Status> {
 /// [`last`] as C text that stays valid until this thread's next call.
 pub(super) fn show_last(handle: Handle) -> *const c_char {
     show(&SHOWN, last(handle).text.replace('\0', " ")).unwrap_or(c"".as_ptr())
+}
+
+/// Keeps why a solve on `handle` ran where it did.
+pub(super) fn keep_backend_reason(handle: Handle, reason: &str) {
+    if let Some(slot) = handles::find_any(handle) {
+        reason.clone_into(&mut slot.backend_reason.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+/// What [`keep_backend_reason`] kept last.
+pub(super) fn backend_reason(handle: Handle) -> String {
+    let copy = |text: &Mutex<String>| text.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    handles::find_any(handle).map(|slot| copy(&slot.backend_reason)).unwrap_or_default()
+}
+
+/// The reason for a backend as C text that stays valid until this thread's next call for one.
+pub(super) fn show_backend(text: String) -> *const c_char {
+    show(&SHOWN_BACKEND, text.replace('\0', " ")).unwrap_or(ptr::null())
 }
 
 /// The JSON form of a problem as C text that stays valid until this thread's next call; JSON holds no zero.

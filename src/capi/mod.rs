@@ -14,6 +14,7 @@
 #![allow(non_snake_case, non_camel_case_types, reason = "the names of libShapeOp's ABI")]
 
 mod arguments;
+mod backend;
 mod canal;
 mod constraints;
 mod current;
@@ -33,6 +34,7 @@ mod snakes;
 mod solver;
 mod structs;
 
+pub use backend::*;
 pub use canal::*;
 pub use constraints::*;
 pub use errors::*;

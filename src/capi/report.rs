@@ -5,6 +5,7 @@ use std::mem::offset_of;
 use std::ops::ControlFlow;
 
 use super::arguments::{check_pointer, write};
+use super::backend::{shapeop_backend, told_backend};
 use super::handles::{Handle, ShapeOpSolver};
 use super::points::check_count;
 use super::solver::shapeop_linear_solver;
@@ -99,6 +100,19 @@ pub struct shapeop_solve_report {
     pub linear_solver: shapeop_linear_solver,
     /// Iterations of conjugate gradients in all linear solves of this call; 0 with a factor.
     pub linear_iterations: c_uint,
+    /// `SO_BACKEND_GPU` if the graphics card made any of the iterations, else `SO_BACKEND_CPU`. `shapeop_backendReason`
+    /// says why.
+    pub backend: shapeop_backend,
+    /// Those of the iterations that the card made.
+    pub gpu_iterations: c_uint,
+    /// The iteration after which points were read back from the card last.
+    pub read_back_iteration: c_uint,
+    /// 0; a gap that keeps the doubles aligned.
+    pub reserved: c_uint,
+    /// Seconds in which the card worked.
+    pub gpu_seconds: f64,
+    /// Seconds in which points went to the card and back.
+    pub transfer_seconds: f64,
 }
 
 /// What a progress callback is told after every iteration.
@@ -138,6 +152,7 @@ unsafe impl SizedStruct for shapeop_solve_report {
         offset_of!(Self, global_seconds),
         offset_of!(Self, evaluations),
         offset_of!(Self, linear_solver),
+        offset_of!(Self, backend),
         size_of::<shapeop_solve_report>(),
     ];
 }
@@ -157,7 +172,8 @@ pub unsafe extern "C" fn shapeop_defaultSolveOptions(options: *mut shapeop_solve
 /// every iteration. While it runs, reading calls on `op` from it answer with the current iterate, and all other calls
 /// are refused as busy. `report` is null, or its `struct_size` is set; it is written on success.
 ///
-/// A force along a motion that no constraint resists is the outcome `SO_OUTCOME_UNBOUNDED` of a successful call.
+/// A force along a motion that no constraint resists is the outcome `SO_OUTCOME_UNBOUNDED` of a successful call, a graphics
+/// card that was lost or refused work the outcome `SO_OUTCOME_BACKEND_FAILED`; `shapeop_lastError` says more.
 ///
 /// # Safety
 /// `options` and `report` are null, or their `struct_size` is set and they are readable or writable for so many bytes.
@@ -206,9 +222,13 @@ pub unsafe extern "C" fn shapeop_solveUntil(
             // SAFETY: the caller vouches for so many bytes.
             unsafe { structs::write(report, report_size, &told) };
         }
-        if found.outcome == Outcome::Unbounded {
-            note = Some(Error::new(Status::Unbounded, found.message));
-        }
+        messages::keep_backend_reason(handle, &found.backend_reason);
+        let status = match found.outcome {
+            Outcome::Unbounded => Some(Status::Unbounded),
+            Outcome::BackendFailed => Some(Status::BackendFailed),
+            _ => None,
+        };
+        note = status.map(|status| Error::new(status, found.message));
         Ok(())
     }));
     if let Some(note) = note {
@@ -290,6 +310,12 @@ fn told(report: &Report, unconstrained_count: usize) -> shapeop_solve_report {
         factorisation_count: report.factorisation_count,
         linear_solver: linear_solver(report.linear_solver),
         linear_iterations: report.linear_iterations,
+        backend: told_backend(report.backend),
+        gpu_iterations: report.gpu_iterations,
+        read_back_iteration: report.read_back_iteration,
+        reserved: 0,
+        gpu_seconds: report.gpu_seconds,
+        transfer_seconds: report.transfer_seconds,
     }
 }
 
@@ -328,6 +354,7 @@ mod tests {
             Outcome::Stalled,
             Outcome::Unbounded,
             Outcome::Infeasible,
+            Outcome::BackendFailed,
         ] {
             assert_eq!(outcome(each) as i32, each as i32);
         }

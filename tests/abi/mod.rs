@@ -243,6 +243,12 @@ pub fn report() -> shapeop_solve_report {
         factorisation_count: u32::MAX,
         linear_solver: shapeop_linear_solver::SO_LINEAR_SOLVER_AUTOMATIC,
         linear_iterations: u32::MAX,
+        backend: shapeop_backend::SO_BACKEND_AUTOMATIC,
+        gpu_iterations: u32::MAX,
+        read_back_iteration: u32::MAX,
+        reserved: u32::MAX,
+        gpu_seconds: -1.0,
+        transfer_seconds: -1.0,
     }
 }
 

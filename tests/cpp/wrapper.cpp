@@ -133,6 +133,7 @@ void progress_sees_every_iterate_and_can_stop() {
     check(report.energy_after < report.energy_before, "the energy fell");
     near(sheet.solver.energy(), report.energy_after, "energy after");
     check(report.note.empty(), "nothing to note");
+    check(report.backend == SO_BACKEND_CPU && report.gpu_iterations == 0, "the processor iterated");
 
     sheet.options.max_iterations = 5;
     calls = 0;

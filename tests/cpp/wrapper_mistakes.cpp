@@ -72,6 +72,15 @@ void wrong_arguments_are_named_and_change_nothing() {
     refused(SO_INVALID_VALUE, {"damping"}, "damping", [&] { solver.set_damping(nan); });
     refused(SO_INVALID_VALUE, {"5000"}, "threads", [&] { solver.set_thread_count(5000); });
     refused(SO_INVALID_VALUE, {"memory"}, "memory", [&] { solver.set_acceleration(SO_ACCELERATION_ANDERSON, 65); });
+    refused(SO_INVALID_VALUE, {"backend", "99"}, "no backend",
+            [&] { solver.set_backend(static_cast<shapeop_backend>(99)); });
+    refused(SO_INVALID_VALUE, {"binding_bytes"}, "half a byte", [&] { solver.set_backend_options("", 0.5); });
+    refused(SO_INVALID_INPUT, {"adapter", "zero byte"}, "a card with a zero",
+            [&] { solver.set_backend_options(std::string("a\0b", 3)); });
+    // The libraries that these tests run with are built without the feature.
+    refused(SO_BACKEND_UNAVAILABLE, {"feature", "gpu"}, "no card", [&] { solver.set_backend(SO_BACKEND_GPU); });
+    refused(SO_BACKEND_UNAVAILABLE, {"feature", "gpu"}, "no card to describe", [&] { solver.backend_info(); });
+    check(solver.backend() == SO_BACKEND_CPU, "the backend is as it was");
     shapeop::SolveOptions options;
     options.tolerance = -1;
     refused(SO_INVALID_VALUE, {"tolerance"}, "tolerance", [&] { solver.solve_until(options); });
@@ -120,6 +129,7 @@ void a_solver_that_was_moved_from_refuses() {
     refused(SO_INVALID_HANDLE, words, "add_constraint", [&] { solver.add_constraint("Closeness", {0}); });
     refused(SO_INVALID_HANDLE, words, "solve_until", [&] { solver.solve_until(); });
     refused(SO_INVALID_HANDLE, words, "energy", [&] { solver.energy(); });
+    refused(SO_INVALID_HANDLE, words, "backend", [&] { solver.backend(); });
     refused(SO_INVALID_HANDLE, words, "set_problem", [&] { solver.set_problem("{}"); });
     solver = std::move(moved);
     check(solver.points().size() == 3, "moved back");

@@ -67,6 +67,11 @@ pub(crate) enum Call {
     SetThreadCount(Op, c_int),
     SetAcceleration(Op, c_int, u32),
     SetLinearSolver(Op, c_int),
+    SetBackend(Op, c_int),
+    /// Part of a name, bytes of a binding, bytes in all.
+    SetBackendOptions(Op, Option<CString>, f64, f64),
+    BackendInfo(Op, Option<u32>),
+    ReleaseBackend,
     AddConstraint(Op, Option<CString>, Array<c_int>, f64),
     /// Type, ids, counts, weights, scalars, number of sets, flags, whether ids are wanted.
     AddConstraints(Op, Option<CString>, Array<c_int>, Array<c_int>, Array<f64>, Array<f64>, c_int, u32, bool),
@@ -278,6 +283,9 @@ pub(crate) fn call() -> impl Strategy<Value = Call> {
         2 => (op(), prop_oneof![9 => 0..4, 1 => integer()], prop_oneof![9 => 0..10_u32, 1 => any::<u32>()])
             .prop_map(|(o, kind, memory)| Call::SetAcceleration(o, kind, memory)),
         2 => (op(), prop_oneof![3 => 0..3, 1 => integer()]).prop_map(|(o, n)| Call::SetLinearSolver(o, n)),
+        2 => (op(), prop_oneof![3 => 0..3, 1 => integer()]).prop_map(|(o, n)| Call::SetBackend(o, n)),
+        1 => (op(), type_name(), prop_oneof![2 => (0..99_u32).prop_map(f64::from), 1 => number()], number())
+            .prop_map(|(o, t, b, m)| Call::SetBackendOptions(o, t, b, m)),
         14 => (op(), fitting(), 0.0..10.0_f64).prop_map(|(o, (t, i), w)| Call::AddConstraint(o, t, i, w)),
         8 => (op(), 0..99_usize, scalars()).prop_map(|(o, pick, s)| Call::EditOwn(o, pick, s)),
         4 => (op(), type_name(), indices(), number()).prop_map(|(o, t, i, w)| Call::AddConstraint(o, t, i, w)),
@@ -324,6 +332,9 @@ pub(crate) fn call() -> impl Strategy<Value = Call> {
         2 => (op(), any::<bool>()).prop_map(|(o, null)| Call::Energy(o, null)),
         2 => (op(), any::<bool>(), integer()).prop_map(|(o, null, n)| Call::Violations(o, null, n)),
         1 => (op(), any::<bool>()).prop_map(|(o, null)| Call::Sensitivities(o, null)),
+        1 => (op(), prop::option::of(struct_size(size_of::<shapeop_backend_info>())))
+            .prop_map(|(o, s)| Call::BackendInfo(o, s)),
+        1 => Just(Call::ReleaseBackend),
         1 => (op(), prop::option::of(struct_size(size_of::<shapeop_exploration>())))
             .prop_map(|(o, s)| Call::Exploration(o, s)),
         1 => (integer(), prop::option::of(named_type)).prop_map(|(i, s)| Call::ConstraintType(i, s)),

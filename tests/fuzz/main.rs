@@ -44,7 +44,7 @@ impl Room {
 #[derive(Clone, Debug, PartialEq)]
 struct Picture {
     points: Vec<u64>,
-    counts: [c_int; 5],
+    counts: [c_int; 6],
     energy: Result<u64, c_int>,
 }
 
@@ -69,6 +69,7 @@ fn picture(op: *mut ShapeOpSolver) -> Option<Picture> {
         shapeop_forceCount(op),
         shapeop_referenceCount(op),
         shapeop_unconstrainedCount(op),
+        shapeop_getBackend(op),
         (0..40).filter(|id| shapeop_isConstraint(op, *id) == 1).count() as c_int,
     ];
     let mut energy = 0.0;
@@ -188,6 +189,17 @@ fn make(call: &Call, own: &mut Own) -> Result<bool, String> {
             Call::SetThreadCount(op, count) => refused(shapeop_setThreadCount(at(op), *count)),
             Call::SetAcceleration(op, kind, memory) => refused(shapeop_setAcceleration(at(op), *kind, *memory)),
             Call::SetLinearSolver(op, kind) => refused(shapeop_setLinearSolver(at(op), *kind)),
+            Call::SetBackend(op, kind) => refused(shapeop_setBackend(at(op), *kind)),
+            Call::SetBackendOptions(op, adapter, binding_bytes, memory_bytes) => {
+                refused(shapeop_setBackendOptions(at(op), name(adapter), *binding_bytes, *memory_bytes))
+            }
+            Call::BackendInfo(op, size) => {
+                let mut room = Room::stating(size.unwrap_or(0));
+                let out = if size.is_some() { room.0.as_mut_ptr().cast() } else { ptr::null_mut() };
+                shapeop_backendReason(at(op));
+                refused(shapeop_backendInfo(at(op), out))
+            }
+            Call::ReleaseBackend => refused(shapeop_releaseBackend()),
             Call::AddConstraint(op, type_name, ids, weight) => {
                 let ids_data = ids.data().cast_mut();
                 let id = shapeop_addConstraint(at(op), name(type_name), ids_data, ids.count(), *weight);
@@ -390,6 +402,8 @@ fn make(call: &Call, own: &mut Own) -> Result<bool, String> {
 fn named(call: &Call, own: &Own) -> *mut ShapeOpSolver {
     let op = match call {
         Call::Create | Call::ConstraintType(..) | Call::ConstraintScalar(..) | Call::ErrorText(_) => None,
+        Call::ReleaseBackend => None,
+        Call::SetBackend(op, _) | Call::SetBackendOptions(op, ..) | Call::BackendInfo(op, _) => Some(op),
         Call::Delete(op) | Call::Init(op) | Call::InitDynamic(op, ..) | Call::Solve(op, _) => Some(op),
         Call::SetPoints(op, _) | Call::GetPoints(op, ..) | Call::SetTimeStep(op, _) | Call::SetDamping(op, _) => {
             Some(op)

@@ -8,6 +8,8 @@ mod kernels;
 mod models;
 mod problems;
 mod strains;
+#[path = "../programs/mod.rs"]
+mod programs;
 
 use shapeop::solver::{BackendOptions, backend_info};
 
@@ -16,7 +18,7 @@ fn has_adapter() -> bool {
     match backend_info(&BackendOptions::default()) {
         Ok(_) => true,
         Err(error) => {
-            eprintln!("LEFT OUT: {error}");
+            programs::leave_out(&format!("iterations on a graphics card: {error}"));
             false
         }
     }

@@ -231,7 +231,7 @@ pub fn set_up(profile: &str) -> Result<Places> {
     let root = shell::root();
     let mut places = Places::default();
     let folder = root.join("target/dist");
-    dist::run(&folder, profile)?;
+    dist::run(&folder, profile, false)?;
     let python = environment(&root.join("target/python"), &REQUIREMENTS)?;
     // The wheel with the library that the other tests use.
     let mut install = Command::new(&python);

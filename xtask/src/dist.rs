@@ -17,11 +17,11 @@ use crate::{licences, shell};
 
 /// The library's file name on this platform.
 #[cfg(windows)]
-const LIBRARY: &str = "shapeop.dll";
+pub const LIBRARY: &str = "shapeop.dll";
 #[cfg(target_os = "macos")]
-const LIBRARY: &str = "libshapeop.dylib";
+pub const LIBRARY: &str = "libshapeop.dylib";
 #[cfg(not(any(windows, target_os = "macos")))]
-const LIBRARY: &str = "libshapeop.so";
+pub const LIBRARY: &str = "libshapeop.so";
 
 /// What a linker on Windows needs beside the library: what it is built as, and the name under which linkers look for it.
 #[cfg(all(windows, target_env = "msvc"))]
@@ -58,10 +58,13 @@ const BUILD_SYSTEM_FILES: [(&str, &str); 4] = [
     ("shapeop-targets.cmake", "lib/cmake/shapeop"),
 ];
 
-/// Builds the library and fills `folder`.
-pub fn run(folder: &Path, profile: &str) -> Result<()> {
+/// Builds the library, with the graphics card if asked for, and fills `folder`.
+pub fn run(folder: &Path, profile: &str, has_gpu: bool) -> Result<()> {
     // With the workspace's selection of packages, so that what `cargo test --workspace` built is used.
-    shell::run(shell::cargo().args(["build", "--quiet", "--workspace", "--lib", "--profile", profile]))?;
+    let features = if has_gpu { "shapeop/gpu" } else { "" };
+    let mut build = shell::cargo();
+    build.args(["build", "--quiet", "--workspace", "--lib", "--profile", profile, "--features", features]);
+    shell::run(&mut build)?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| shell::root().join("target"), Into::into);
     // The profiles dev and test build into `debug`.
     let built = target.join(if profile == "dev" || profile == "test" { "debug" } else { profile });
@@ -82,7 +85,8 @@ pub fn run(folder: &Path, profile: &str) -> Result<()> {
             fs::read_to_string(&template).with_context(|| format!("{} could not be read", template.display()))?;
         write(&folder.join(place).join(name), &fill_in(&text).with_context(|| template.display().to_string())?)?;
     }
-    for licence in ["LICENSE-APACHE", "LICENSE-MIT", licences::FILE] {
+    let of_gpu = has_gpu.then_some(licences::FILE_OF_GPU);
+    for licence in ["LICENSE-APACHE", "LICENSE-MIT", licences::FILE].into_iter().chain(of_gpu) {
         copy(&root.join(licence), &folder.join("share/licenses/shapeop").join(licence))?;
     }
     for header in ["API.h", "Common.h"] {

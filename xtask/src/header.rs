@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use crate::{declarations, shell};
 
 /// The sources of the C ABI, in the order in which the header groups functions.
-const SOURCES: [&str; 44] = [
+const SOURCES: [&str; 45] = [
     "errors",
     "handles",
     "solver",
@@ -19,6 +19,7 @@ const SOURCES: [&str; 44] = [
     "registry",
     "report",
     "explore",
+    "backend",
     "problem",
     "canal/surface",
     "canal/kinks",

@@ -36,6 +36,9 @@ enum Command {
         /// The Cargo profile to build with.
         #[arg(long, default_value = "release")]
         profile: String,
+        /// Build the library with the feature `gpu`: solving on the graphics card.
+        #[arg(long)]
+        gpu: bool,
     },
     /// Write what is made from src/capi: include/shapeop.h, and the declarations for Python and C#.
     Header {
@@ -64,7 +67,7 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Bench(options) => bench::run(&options),
-        Command::Dist { folder, profile } => dist::run(&folder, &profile),
+        Command::Dist { folder, profile, gpu } => dist::run(&folder, &profile, gpu),
         Command::Header { check } => header::run(check),
         Command::Docs => docs::run(),
         Command::Show { area, reuse, repetitions } => show::run(area, reuse, repetitions),

@@ -40,8 +40,14 @@ const TOOLS: [Tool; 13] = [
     tool(&["mono"], "mono-runtime"),
 ];
 
-/// A library that tests load, and the Debian packages that bring it: Polyscope draws with it where there is no window.
-const LIBRARIES: [(&str, &[&str]); 1] = [("libEGL.so.1", &["libegl1", "libgl1-mesa-dri"])];
+/// A library that tests load, and the Debian packages that bring it: Polyscope draws with the first where there is no
+/// window, and graphics cards are found through the second.
+const LIBRARIES: [(&str, &[&str]); 2] =
+    [("libEGL.so.1", &["libegl1", "libgl1-mesa-dri"]), ("libvulkan.so.1", &["libvulkan1"])];
+
+/// The graphics card that is a program, which tests solve on where there is no other: the folder that Vulkan looks for
+/// drivers in, how the file begins that names this one, and the Debian package that brings it.
+const SOFTWARE_CARD: (&str, &str, &str) = ("/usr/share/vulkan/icd.d", "lvp_icd", "mesa-vulkan-drivers");
 
 /// Tries of a download before giving up, with pauses of 5, 10, ... seconds between them.
 const DOWNLOAD_TRIES: u64 = 4;
@@ -73,6 +79,10 @@ fn missing() -> Vec<&'static str> {
         let known = known.map_or_else(|_| String::new(), |output| String::from_utf8_lossy(&output.stdout).into_owned());
         let not_known = LIBRARIES.iter().filter(|(name, _)| !known.contains(name));
         packages.extend(not_known.flat_map(|(_, packages)| packages.iter()));
+        let (folder, start, package) = SOFTWARE_CARD;
+        if !has_file(Path::new(folder), start) {
+            packages.push(package);
+        }
     }
     packages
 }
@@ -81,6 +91,12 @@ impl Tool {
     fn is_there(&self) -> bool {
         self.names.iter().any(|name| quiet(name, &[self.probe]))
     }
+}
+
+/// True if a file in `folder` begins with `start`.
+fn has_file(folder: &Path, start: &str) -> bool {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.into_iter().any(|entry| entry.file_name().to_string_lossy().starts_with(start))
 }
 
 fn quiet(program: &str, arguments: &[&str]) -> bool {

@@ -26,7 +26,9 @@ pub fn run() -> Result<()> {
         timed(&line, || shell::run(shell::cargo().arg("test").args(arguments).env("SHAPEOP_LEFT_OUT", &left_out)))
     };
     cargo_test(&["--workspace"])?;
-    cargo_test(&["--workspace", "--features", "shapeop/schema", "--test", "schema"])?;
+    // One more build of the library serves all that need a feature.
+    let features = ["--workspace", "--features", "shapeop/schema,shapeop/gpu"];
+    cargo_test(&[&features[..], &["--test", "schema", "--test", "gpu", "--test", "capi_backend"]].concat())?;
 
     timed("licences of the crates inside the library", || licences::run(true))?;
     let places = timed("set-up of the bindings' tests", || bindings::set_up(PROFILE))?;

@@ -65,6 +65,10 @@ namespace ShapeOp
         Infeasible = 38,
         /// <summary>What is asked for lies outside the surface, or outside the values of a function.</summary>
         OutOfDomain = 39,
+        /// <summary>There is no graphics card to solve on, or not enough of it; or the library was built without the feature gpu.</summary>
+        BackendUnavailable = 40,
+        /// <summary>The graphics card was lost or refused work; the points are those of the last read-back.</summary>
+        BackendFailed = 41,
     }
 
     /// <summary>How iterations are accelerated: see shapeop_setAcceleration.</summary>
@@ -122,6 +126,11 @@ namespace ShapeOp
         Unbounded = 5,
         /// <summary>Hard constraints contradict each other; shapeop_getConflicts names a small set, and the points meet the others.</summary>
         Infeasible = 6,
+        /// <summary>
+        /// The graphics card was lost or refused work; the points are those of the last read-back. shapeop_lastError says
+        /// what happened.
+        /// </summary>
+        BackendFailed = 7,
     }
 
     /// <summary>What the fairness term measures displacements with.</summary>
@@ -133,6 +142,35 @@ namespace ShapeOp
         SecondDifferences = 1,
         /// <summary>Third differences along polylines.</summary>
         ThirdDifferences = 2,
+    }
+
+    /// <summary>What carries out the iterations of a solve: see shapeop_setBackend.</summary>
+    public enum Backend
+    {
+        /// <summary>The default: the processor, in double precision.</summary>
+        Cpu = 0,
+        /// <summary>The graphics card, in single precision; what a tolerance asks for beyond that the processor finishes.</summary>
+        Gpu = 1,
+        /// <summary>
+        /// The card where there is one that is faster on the model at hand, which the first iterations measure; else, and
+        /// where anything is missing, the processor.
+        /// </summary>
+        Automatic = 2,
+    }
+
+    /// <summary>What kind of adapter it is, the fastest first.</summary>
+    public enum AdapterKind
+    {
+        /// <summary>A card with memory of its own.</summary>
+        Discrete = 0,
+        /// <summary>A part of the processor that shares its memory.</summary>
+        Integrated = 1,
+        /// <summary>A card that a virtual machine lends.</summary>
+        Virtual = 2,
+        /// <summary>Not known.</summary>
+        Other = 3,
+        /// <summary>A program that behaves like a card: for tests.</summary>
+        Software = 4,
     }
 
     /// <summary>What the base of a surface is; it decides on the name of its family only.</summary>
@@ -443,6 +481,12 @@ namespace ShapeOp
             internal uint factorisation_count;
             internal LinearSolver linear_solver;
             internal uint linear_iterations;
+            internal Backend backend;
+            internal uint gpu_iterations;
+            internal uint read_back_iteration;
+            internal uint reserved;
+            internal double gpu_seconds;
+            internal double transfer_seconds;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -482,6 +526,20 @@ namespace ShapeOp
             internal double fairness_term;
             internal double soft_term;
             internal double penalty;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        internal struct shapeop_backend_info
+        {
+            internal uint struct_size;
+            internal AdapterKind kind;
+            internal uint group_count;
+            internal uint reserved;
+            internal double buffer_bytes;
+            internal double binding_bytes;
+            internal IntPtr adapter;
+            internal IntPtr api;
+            internal IntPtr driver;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -1260,6 +1318,28 @@ namespace ShapeOp
             int nbPoints,
             double[] squares,
             int nbClasses);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_setBackend(SolverHandle op, int backend);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern int shapeop_getBackend(SolverHandle op);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_setBackendOptions(
+            SolverHandle op,
+            byte[] adapter,
+            double bindingBytes,
+            double memoryBytes);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_backendInfo(SolverHandle op, ref shapeop_backend_info @out);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern IntPtr shapeop_backendReason(SolverHandle op);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        internal static extern ErrorCode shapeop_releaseBackend();
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         internal static extern ErrorCode shapeop_setProblem(

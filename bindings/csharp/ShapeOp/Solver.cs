@@ -157,6 +157,38 @@ namespace ShapeOp
         }
 
         /// <summary>
+        /// What carries out the iterations of the following solves. The graphics card is refused as
+        /// <see cref="ErrorCode.BackendUnavailable"/> where there is none, and by a library without the feature gpu. The
+        /// report of a solve says what ran, and why.
+        /// </summary>
+        public Backend Backend
+        {
+            get { return (Backend)handle.CheckNumber(Native.shapeop_getBackend(Usable)); }
+            set { handle.Check(Native.shapeop_setBackend(Usable, (int)value)); }
+        }
+
+        /// <summary>Chooses the graphics card of the following solves, and how much of it they may use.</summary>
+        /// <param name="adapter">A part of its name, of any case; empty: any, the fastest kind first.</param>
+        /// <param name="bindingBytes">Bytes of one binding at most; 0: what the card allows.</param>
+        /// <param name="memoryBytes">Bytes of the card that the solver may take; 0: no limit.</param>
+        public void SetBackendOptions(string adapter, long bindingBytes = 0, long memoryBytes = 0)
+        {
+            byte[] name = Text.ToLibrary(adapter, nameof(adapter));
+            handle.Check(Native.shapeop_setBackendOptions(Usable, name, bindingBytes, memoryBytes));
+        }
+
+        /// <summary>The graphics card of this solver. The first call takes a while: it opens it.</summary>
+        public BackendInfo GetBackendInfo()
+        {
+            var info = new Native.shapeop_backend_info
+            {
+                struct_size = (uint)Marshal.SizeOf<Native.shapeop_backend_info>(),
+            };
+            handle.Check(Native.shapeop_backendInfo(Usable, ref info));
+            return new BackendInfo(info);
+        }
+
+        /// <summary>
         /// Static: so many iterations from the current points. Dynamic: one time step with so many iterations.
         /// </summary>
         public void Solve(int iterations)
@@ -208,8 +240,9 @@ namespace ShapeOp
             GC.KeepAlive(callback);
             failure?.Throw();
             handle.Check(code);
-            string message = report.outcome == Outcome.Unbounded ? Text.FromLibrary(Native.shapeop_lastError(handle)) : null;
-            return new Report(report, message);
+            bool hasMessage = report.outcome == Outcome.Unbounded || report.outcome == Outcome.BackendFailed;
+            string message = hasMessage ? Text.FromLibrary(Native.shapeop_lastError(handle)) : null;
+            return new Report(report, Text.FromLibrary(Native.shapeop_backendReason(handle)), message);
         }
 
         /// <summary>

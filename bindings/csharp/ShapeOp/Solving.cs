@@ -76,16 +76,20 @@ namespace ShapeOp
     {
         readonly Native.shapeop_solve_report report;
 
-        internal Report(Native.shapeop_solve_report report, string message)
+        internal Report(Native.shapeop_solve_report report, string backendReason, string message)
         {
             this.report = report;
+            BackendReason = backendReason;
             Message = message;
         }
 
         /// <summary>Why it ended.</summary>
         public Outcome Outcome => report.outcome;
 
-        /// <summary>Which motion no constraint resists if the outcome is unbounded; else null.</summary>
+        /// <summary>
+        /// Which motion no constraint resists if the outcome is unbounded, what happened to the graphics card if the
+        /// backend failed; else null.
+        /// </summary>
         public string Message { get; }
 
         /// <summary>Iterations made.</summary>
@@ -152,5 +156,23 @@ namespace ShapeOp
         /// Iterations of conjugate gradients in all linear solves of this call; 0 with a factor.
         /// </summary>
         public int LinearIterations => (int)report.linear_iterations;
+
+        /// <summary>The graphics card if it made any of the iterations, else the processor.</summary>
+        public Backend Backend => report.backend;
+
+        /// <summary>Why it ran on that backend, in words.</summary>
+        public string BackendReason { get; }
+
+        /// <summary>Those of the iterations that the card made.</summary>
+        public int GpuIterations => (int)report.gpu_iterations;
+
+        /// <summary>The iteration after which points were read back from the card last.</summary>
+        public int ReadBackIteration => (int)report.read_back_iteration;
+
+        /// <summary>In which the card worked.</summary>
+        public double GpuSeconds => report.gpu_seconds;
+
+        /// <summary>In which points went to the card and back.</summary>
+        public double TransferSeconds => report.transfer_seconds;
     }
 }

@@ -45,6 +45,7 @@ def test_every_type_can_be_added_by_what_the_registry_says_of_it() -> None:
         (shapeop.Outcome, "SO_OUTCOME_"),
         (shapeop.Acceleration, "SO_ACCELERATION_"),
         (shapeop.LinearSolver, "SO_LINEAR_SOLVER_"),
+        (shapeop.AdapterKind, "SO_ADAPTER_"),
         (shapeop.Projection, "SO_PROJECTION_"),
         (shapeop.Fairness, "SO_FAIRNESS_"),
         (shapeop.canal.Kind, "SO_CANAL_KIND_"),
@@ -70,7 +71,8 @@ def test_no_member_of_an_enum_is_missing(kind: type[IntEnum], prefix: str) -> No
 
 def test_no_error_code_is_missing() -> None:
     solvers = ("SO_OUTCOME_", "SO_ACCELERATION_", "SO_LINEAR_SOLVER_", "SO_PROJECTION_", "SO_FAIRNESS_", "SO_SUCCESS")
-    enums = (*solvers, "SO_CANAL_", "SO_RULED_", "SO_SNAKE_")
+    backends = ("SO_BACKEND_CPU", "SO_BACKEND_GPU", "SO_BACKEND_AUTOMATIC", "SO_ADAPTER_")
+    enums = (*solvers, *backends, "SO_CANAL_", "SO_RULED_", "SO_SNAKE_")
     names = [name for name in vars(_abi) if name.startswith("SO_") and not name.startswith(enums)]
     assert {code.name for code in shapeop.ErrorCode} == {name[len("SO_") :] for name in names}
     for code in shapeop.ErrorCode:
@@ -80,7 +82,13 @@ def test_no_error_code_is_missing() -> None:
 
 def test_the_report_and_the_progress_have_every_field_of_their_structs() -> None:
     fields = [field.name for field in dataclasses.fields(shapeop.Report)]
-    assert fields == [*[name for name, *_ in _abi.shapeop_solve_report._fields_[1:]], "message"]
+    told = [name for name, *_ in _abi.shapeop_solve_report._fields_[1:] if name != "reserved"]
+    assert fields == [*told, "backend_reason", "message"]
+    told = [name for name, *_ in _abi.shapeop_backend_info._fields_[1:] if name != "reserved"]
+    assert list(shapeop.BackendInfo._fields) == told
+    members = {name[len("SO_BACKEND_") :]: vars(_abi)[name] for name in ("SO_BACKEND_CPU", "SO_BACKEND_GPU")}
+    members["AUTOMATIC"] = _abi.SO_BACKEND_AUTOMATIC
+    assert {member.name: member.value for member in shapeop.Backend} == members
     fields = [field.name for field in dataclasses.fields(shapeop.Exploration)]
     assert fields == [name for name, *_ in _abi.shapeop_exploration._fields_[1:]]
     assert list(shapeop.Progress._fields) == [name for name, *_ in _abi.shapeop_progress._fields_[1:]]

@@ -12,7 +12,7 @@ import pytest
 import shapeop
 from near import assert_near
 from samples import SQUARE, saddle, sheet
-from shapeop import Acceleration, LinearSolver, Outcome, Solver, _library
+from shapeop import Acceleration, Backend, LinearSolver, Outcome, Solver, _library
 from shapeop import solver as solver_module
 
 
@@ -235,6 +235,38 @@ def test_acceleration_linear_solver_and_threads_are_taken_by_name_and_by_member(
     assert quick.linear_solver is LinearSolver.DIRECT
     assert quick.iterations < plain.iterations
     assert solve("quasi-newton", "direct", 1).iterations == quick.iterations
+
+
+def test_the_backend_is_taken_by_name_and_by_member_and_the_report_says_what_ran() -> None:
+    with sheet(8) as solver:
+        assert solver.backend is Backend.CPU
+        solver.backend = "automatic"
+        assert solver.backend is Backend.AUTOMATIC
+        solver.backend = Backend.CPU
+        report = solver.solve_until()
+        assert (report.backend, report.gpu_iterations, report.gpu_seconds) == (Backend.CPU, 0, 0.0)
+        assert report.backend_reason == _library.text(_library.lib.shapeop_backendReason(solver._handle))
+        solver.set_backend_options("a card", binding_bytes=4096, memory_bytes=10**9)
+    shapeop.release_backend()
+
+
+def test_a_library_without_the_feature_says_so() -> None:
+    with sheet(4) as solver:
+        try:
+            info = solver.backend_info()
+        except shapeop.BackendError as error:
+            # That of these tests, unless somebody puts another in its place.
+            assert error.code is shapeop.ErrorCode.BACKEND_UNAVAILABLE
+            assert str(error) == 'this library was built without the feature "gpu"'
+            with pytest.raises(shapeop.BackendError, match="feature"):
+                solver.backend = "gpu"
+            assert solver.backend is Backend.CPU
+        else:
+            assert info.adapter
+            assert isinstance(info.kind, shapeop.AdapterKind)
+            assert info.buffer_bytes >= info.binding_bytes > 0
+            solver.backend = "gpu"
+            assert solver.backend is Backend.GPU
 
 
 def test_a_solver_is_deleted_when_closed_and_when_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -155,7 +155,7 @@ pub fn carry_out(
     // Before anything takes long: a folder that cannot be made should not cost an hour.
     let mut output = Output::new(&output_args.out, job.input, name, output_args.picture)?;
     progress::catch_interrupts();
-    let found = run::run(problem, &settings, iterate.threads, is_quiet)?;
+    let found = run::run(problem, &settings, iterate, is_quiet)?;
     let after = Mesh { points: found.solver.points().to_vec(), faces: job.mesh.faces.clone() };
     let subject = Subject {
         command: name,

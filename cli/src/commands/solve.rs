@@ -25,7 +25,7 @@ pub fn run(args: &SolveArgs, is_quiet: bool) -> Result<Ending> {
     settings.steps = args.steps.unwrap_or(settings.steps);
     let mut output = Output::new(&args.output.out, &args.problem, "solve", args.output.picture)?;
     progress::catch_interrupts();
-    let found = run::run(&problem, &settings, args.iterate.threads, is_quiet).with_context(|| name.to_string())?;
+    let found = run::run(&problem, &settings, &args.iterate, is_quiet).with_context(|| name.to_string())?;
 
     let mesh_of = |points: &[DVec3]| Mesh { points: points.to_vec(), faces: problem.faces.clone() };
     let start: Vec<DVec3> = problem.points.iter().copied().map(DVec3::from_array).collect();

@@ -209,6 +209,16 @@ static class Refusals
                 Refused(ErrorCode.InvalidValue, "65", () => solver.SetAcceleration(Acceleration.Anderson, 65));
                 Refused(ErrorCode.InvalidValue, "99", () => solver.SetAcceleration((Acceleration)99));
                 Refused(ErrorCode.InvalidValue, "99", () => solver.SetLinearSolver((LinearSolver)99));
+                Refused(ErrorCode.InvalidValue, "99", () => solver.Backend = (Backend)99);
+                Refused(ErrorCode.InvalidValue, "binding_bytes", () => solver.SetBackendOptions("", -1));
+                Refused(ErrorCode.InvalidInput, "adapter", () => solver.SetBackendOptions("a\0b"));
+                // The libraries that these tests run with are built without the feature.
+                Refused(ErrorCode.BackendUnavailable, "feature", () => solver.Backend = Backend.Gpu);
+                Refused(ErrorCode.BackendUnavailable, "feature", () => solver.GetBackendInfo());
+                Equal(Backend.Cpu, solver.Backend);
+                solver.Backend = Backend.Automatic;
+                Equal(Backend.Automatic, solver.Backend);
+                BackendInfo.Release();
                 Refused(ErrorCode.InvalidValue, "iterations: expected at least 0, found -5", () => solver.Solve(-5));
                 Refused(
                     ErrorCode.InvalidValue, "MaxIterations",

@@ -34,6 +34,9 @@ static partial class Tests
                 True(report.EnergyAfter < 0.5 * report.EnergyBefore, "the energy hardly fell");
                 Equal(LinearSolver.Direct, report.LinearSolver);
                 Equal(1, report.FactorisationCount);
+                Equal(Backend.Cpu, report.Backend);
+                Equal(0, report.GpuIterations);
+                Near(Numbers(0, 0), Numbers(report.GpuSeconds, report.TransferSeconds), 0);
                 Equal(null, report.Message);
             }
         });

@@ -249,11 +249,21 @@ fn line(case: &Case) -> String {
     )
 }
 
-/// Builds a benchmark; returns the program.
-pub fn build(bench: &str, profile: &str) -> Result<PathBuf> {
+/// Builds a benchmark with these features; returns the program.
+pub fn build(bench: &str, profile: &str, features: &str) -> Result<PathBuf> {
     // With the workspace's selection of packages, so that what was built for other commands is used.
     let mut cargo = shell::cargo();
-    cargo.args(["build", "--quiet", "--workspace", "--bench", bench, "--message-format", "json"]);
+    cargo.args([
+        "build",
+        "--quiet",
+        "--workspace",
+        "--bench",
+        bench,
+        "--message-format",
+        "json",
+        "--features",
+        features,
+    ]);
     let messages = shell::output(cargo.args(["--profile", profile]))?;
     let mut programs = messages.lines().filter_map(|line| {
         let message: Value = serde_json::from_str(line).ok()?;
@@ -277,7 +287,7 @@ type Runs = Vec<[f64; 3]>;
 impl Runner {
     /// Builds this library's program.
     pub fn new(profile: &str, peer: Result<PathBuf>, folder: PathBuf) -> Result<Self> {
-        Ok(Self { program: build("problems", profile)?, peer, folder })
+        Ok(Self { program: build("problems", profile, "")?, peer, folder })
     }
 
     fn case(&self, problem: &str, size: u32, peer_has_it: bool, plan: &Plan) -> Result<Case> {

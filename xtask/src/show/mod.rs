@@ -4,6 +4,7 @@ mod bindings;
 mod canal;
 mod engine;
 mod exploration;
+mod gpu;
 mod program;
 mod ruled;
 mod snakes;
@@ -26,6 +27,8 @@ pub enum Area {
     Canal,
     /// Hard constraints: projections, exact planarity, IPOPT, the paper's figures, a large drag, contradictions, weights.
     Exploration,
+    /// The graphics card: what the feature brings and costs, energies against those of the processor, times on a card.
+    Gpu,
     /// Ruled free forms: ground truths, strips of five surfaces, the paper's figures with pictures, seconds per step for a large mesh.
     Ruled,
     /// Circular arc snakes: ground truths, the linkage that comes back, milliseconds per step, the paper's figures with pictures.
@@ -41,6 +44,7 @@ pub fn run(area: Area, reuse: bool, repetitions: Option<usize>) -> Result<()> {
         Area::Exploration => exploration::show(&mut figures)?,
         Area::Canal => canal::show(&mut figures)?,
         Area::Bindings => bindings::show(&mut figures)?,
+        Area::Gpu => gpu::show(&mut figures)?,
         Area::Ruled => ruled::show(&mut figures)?,
         Area::Snakes => snakes::show(&mut figures)?,
     }

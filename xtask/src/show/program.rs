@@ -1,4 +1,4 @@
-//! Programs of `cli/benches` that measure and draw, and tell groups of figures as lines of JSON.
+//! Programs of `cli/benches` and `benches` that measure and draw, and tell groups of figures as lines of JSON.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,7 +16,12 @@ pub struct Program(PathBuf);
 impl Program {
     /// The program of this name, built in release.
     pub fn build(name: &str) -> Result<Self> {
-        Ok(Self(measure::build(name, "release")?))
+        Self::build_with(name, "")
+    }
+
+    /// The same with features of the library.
+    pub fn build_with(name: &str, features: &str) -> Result<Self> {
+        Ok(Self(measure::build(name, "release", features)?))
     }
 
     /// What it prints.

@@ -28,9 +28,21 @@ struct SolveOptions : shapeop_solve_options {
 struct Report : shapeop_solve_report {
     Report() : shapeop_solve_report{} { struct_size = sizeof(shapeop_solve_report); }
 
-    /// Along which motion it is unbounded, if that is the outcome; else empty.
+    /// Along which motion it is unbounded, or what happened to the graphics card, if that is the outcome; else empty.
     std::string note;
+
+    /// Why it ran on this backend, in words.
+    std::string backend_reason;
 };
+
+/// The graphics card that iterates: the fields of shapeop_backend_info. The texts stay valid.
+struct BackendInfo : shapeop_backend_info {
+    BackendInfo() : shapeop_backend_info{} { struct_size = sizeof(shapeop_backend_info); }
+};
+
+/// Gives the graphics card back, with all memory that solvers have on it. Solves that run on it end with the outcome
+/// SO_OUTCOME_BACKEND_FAILED; later ones open it again.
+inline void release_backend() { detail::check(shapeop_releaseBackend(), nullptr); }
 
 /// What a progress callback is told: iteration, energy, largest_move.
 using Progress = shapeop_progress;
@@ -311,6 +323,31 @@ public:
         detail::check(shapeop_setLinearSolver(handle(), kind), handle());
     }
 
+    /// What carries out the iterations of the following solves. SO_BACKEND_GPU is refused where there is no graphics card,
+    /// and by a library without the feature gpu.
+    void set_backend(shapeop_backend backend) {
+        detail::check(shapeop_setBackend(handle(), backend), handle());
+    }
+
+    /// What was set.
+    shapeop_backend backend() const {
+        return static_cast<shapeop_backend>(detail::check_number(shapeop_getBackend(handle()), handle()));
+    }
+
+    /// Chooses the graphics card by a part of its name (empty: any), the bytes of one binding at most, and the bytes that
+    /// the solver may take of it; 0: no limit.
+    void set_backend_options(const std::string &adapter, double binding_bytes = 0, double memory_bytes = 0) {
+        detail::check(shapeop_setBackendOptions(handle(), detail::c_text(adapter, "adapter"), binding_bytes, memory_bytes),
+                      handle());
+    }
+
+    /// The graphics card of this solver. The first call takes a while: it opens it.
+    BackendInfo backend_info() const {
+        BackendInfo info;
+        detail::check(shapeop_backendInfo(handle(), &info), handle());
+        return info;
+    }
+
     /// Static: so many iterations. Dynamic: one time step with so many iterations.
     void solve(unsigned int iterations) { check_flag(shapeop_solve(handle(), iterations)); }
 
@@ -318,7 +355,7 @@ public:
     Report solve_until(const SolveOptions &options = {}) {
         Report report;
         detail::check(shapeop_solveUntil(handle(), &options, nullptr, nullptr, &report), handle());
-        report.note = shapeop_lastError(handle());
+        tell(report);
         return report;
     }
 
@@ -333,7 +370,7 @@ public:
             std::rethrow_exception(watch.thrown);
         }
         detail::check(code, handle());
-        report.note = shapeop_lastError(handle());
+        tell(report);
         return report;
     }
 
@@ -352,6 +389,13 @@ public:
     }
 
 private:
+    void tell(Report &report) const {
+        report.note = shapeop_lastError(handle());
+        if (const char *reason = shapeop_backendReason(handle())) {
+            report.backend_reason = reason;
+        }
+    }
+
     struct Delete {
         void operator()(ShapeOpSolver *op) const noexcept { shapeop_delete(op); }
     };

@@ -12,6 +12,7 @@ from ._library import (
     LIBRARY_PATH,
     ArgumentError,
     ArgumentTypeError,
+    BackendError,
     BusyError,
     ClosedError,
     Error,
@@ -25,6 +26,7 @@ from ._library import (
     UnknownIdError,
     version,
 )
+from .backend import AdapterKind, BackendInfo, release_backend
 from .exploration import Exploration, Fairness, Sensitivities
 from .problem import (
     Constraint,
@@ -39,7 +41,7 @@ from .problem import (
 )
 from .recipes import FairnessKind, Recipe, Result, measure_faces, measure_names, recipe, recipe_names
 from .registry import ConstraintType, Projection, Scalar, constraint_types
-from .report import Acceleration, LinearSolver, Outcome, Progress, Report
+from .report import Acceleration, Backend, LinearSolver, Outcome, Progress, Report
 from .solver import Solver
 
 __version__ = version()
@@ -47,8 +49,12 @@ __version__ = version()
 __all__ = [
     "LIBRARY_PATH",
     "Acceleration",
+    "AdapterKind",
     "ArgumentError",
     "ArgumentTypeError",
+    "Backend",
+    "BackendError",
+    "BackendInfo",
     "BusyError",
     "ClosedError",
     "Constraint",
@@ -89,6 +95,7 @@ __all__ = [
     "measure_names",
     "recipe",
     "recipe_names",
+    "release_backend",
     "ruled",
     "snakes",
     "version",

@@ -37,6 +37,8 @@ SO_CURVATURE_SIGN = 36
 SO_NOT_ORIENTABLE = 37
 SO_INFEASIBLE = 38
 SO_OUT_OF_DOMAIN = 39
+SO_BACKEND_UNAVAILABLE = 40
+SO_BACKEND_FAILED = 41
 
 # shapeop_acceleration
 SO_ACCELERATION_NONE = 0
@@ -62,11 +64,24 @@ SO_OUTCOME_CANCELLED = 3
 SO_OUTCOME_STALLED = 4
 SO_OUTCOME_UNBOUNDED = 5
 SO_OUTCOME_INFEASIBLE = 6
+SO_OUTCOME_BACKEND_FAILED = 7
 
 # shapeop_fairness
 SO_FAIRNESS_LAPLACIAN = 0
 SO_FAIRNESS_SECOND_DIFFERENCES = 1
 SO_FAIRNESS_THIRD_DIFFERENCES = 2
+
+# shapeop_backend
+SO_BACKEND_CPU = 0
+SO_BACKEND_GPU = 1
+SO_BACKEND_AUTOMATIC = 2
+
+# shapeop_adapter_kind
+SO_ADAPTER_DISCRETE = 0
+SO_ADAPTER_INTEGRATED = 1
+SO_ADAPTER_VIRTUAL = 2
+SO_ADAPTER_OTHER = 3
+SO_ADAPTER_SOFTWARE = 4
 
 # shapeop_canal_kind
 SO_CANAL_KIND_CANAL = 0
@@ -236,6 +251,12 @@ class shapeop_solve_report(ctypes.Structure):
         ("factorisation_count", c_uint),
         ("linear_solver", c_int),
         ("linear_iterations", c_uint),
+        ("backend", c_int),
+        ("gpu_iterations", c_uint),
+        ("read_back_iteration", c_uint),
+        ("reserved", c_uint),
+        ("gpu_seconds", c_double),
+        ("transfer_seconds", c_double),
     ]
 
 
@@ -275,6 +296,20 @@ class shapeop_exploration(ctypes.Structure):
         ("fairness_term", c_double),
         ("soft_term", c_double),
         ("penalty", c_double),
+    ]
+
+
+class shapeop_backend_info(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint),
+        ("kind", c_int),
+        ("group_count", c_uint),
+        ("reserved", c_uint),
+        ("buffer_bytes", c_double),
+        ("binding_bytes", c_double),
+        ("adapter", c_char_p),
+        ("api", c_char_p),
+        ("driver", c_char_p),
     ]
 
 
@@ -879,6 +914,12 @@ FUNCTIONS = {
     "shapeop_weightClassCount": (c_int, [c_void_p]),
     "shapeop_weightClassName": (c_char_p, [c_void_p, c_int]),
     "shapeop_getSensitivities": (c_int, [c_void_p, POINTER(c_double), c_int, POINTER(c_double), c_int]),
+    "shapeop_setBackend": (c_int, [c_void_p, c_int]),
+    "shapeop_getBackend": (c_int, [c_void_p]),
+    "shapeop_setBackendOptions": (c_int, [c_void_p, c_char_p, c_double, c_double]),
+    "shapeop_backendInfo": (c_int, [c_void_p, POINTER(shapeop_backend_info)]),
+    "shapeop_backendReason": (c_char_p, [c_void_p]),
+    "shapeop_releaseBackend": (c_int, []),
     "shapeop_setProblem": (c_int, [c_void_p, c_char_p, POINTER(shapeop_solve_options)]),
     "shapeop_problemText": (c_char_p, [c_char_p]),
     "shapeop_defaultRecipeOptions": (c_int, [POINTER(shapeop_recipe_options)]),

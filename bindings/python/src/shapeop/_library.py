@@ -45,6 +45,8 @@ class ErrorCode(IntEnum):
     NOT_ORIENTABLE = _abi.SO_NOT_ORIENTABLE
     INFEASIBLE = _abi.SO_INFEASIBLE
     OUT_OF_DOMAIN = _abi.SO_OUT_OF_DOMAIN
+    BACKEND_UNAVAILABLE = _abi.SO_BACKEND_UNAVAILABLE
+    BACKEND_FAILED = _abi.SO_BACKEND_FAILED
 
 
 class Error(Exception):
@@ -85,6 +87,10 @@ class NotInitialisedError(Error, RuntimeError):
 
 class UnboundedError(Error, RuntimeError):
     """A force acts along a motion that no constraint resists."""
+
+
+class BackendError(Error, RuntimeError):
+    """There is no graphics card to solve on, or it was lost or refused work; ``code`` says which."""
 
 
 class GeometryError(Error, ValueError):
@@ -128,6 +134,8 @@ _CLASSES: dict[int, type[Error]] = {
     ErrorCode.NOT_ORIENTABLE: GeometryError,
     ErrorCode.INFEASIBLE: GeometryError,
     ErrorCode.OUT_OF_DOMAIN: GeometryError,
+    ErrorCode.BACKEND_UNAVAILABLE: BackendError,
+    ErrorCode.BACKEND_FAILED: BackendError,
 }
 
 

@@ -26,6 +26,8 @@ class Outcome(IntEnum):
     """A force acts along a motion that no constraint resists; the points did not move."""
     INFEASIBLE = _abi.SO_OUTCOME_INFEASIBLE
     """Hard constraints contradict each other: :meth:`Solver.conflicts` names a small set; the others are met."""
+    BACKEND_FAILED = _abi.SO_OUTCOME_BACKEND_FAILED
+    """The graphics card was lost or refused work; the points are those of ``read_back_iteration``."""
 
 
 class Acceleration(IntEnum):
@@ -50,6 +52,17 @@ class LinearSolver(IntEnum):
     """A Cholesky factor, computed once and used in every iteration."""
     CONJUGATE_GRADIENTS = _abi.SO_LINEAR_SOLVER_CONJUGATE_GRADIENTS
     """Conjugate gradients, preconditioned by multigrid."""
+
+
+class Backend(IntEnum):
+    """What carries out the iterations of a solve."""
+
+    CPU = _abi.SO_BACKEND_CPU
+    """The default: the processor, in double precision."""
+    GPU = _abi.SO_BACKEND_GPU
+    """The graphics card, in single precision; what a tolerance asks for beyond that the processor finishes."""
+    AUTOMATIC = _abi.SO_BACKEND_AUTOMATIC
+    """The card where there is one that is faster on the model at hand; else the processor."""
 
 
 class Progress(NamedTuple):
@@ -107,15 +120,30 @@ class Report:
     """How linear systems were solved."""
     linear_iterations: int
     """Iterations of conjugate gradients; 0 with a factor."""
+    backend: Backend
+    """``GPU`` if the graphics card made any of the iterations, else ``CPU``."""
+    gpu_iterations: int
+    """Those of the iterations that the card made."""
+    read_back_iteration: int
+    """The iteration after which points were read back from the card last."""
+    gpu_seconds: float
+    """Seconds in which the card worked."""
+    transfer_seconds: float
+    """Seconds in which points went to the card and back."""
+    backend_reason: str = ""
+    """Why it ran on that backend."""
     message: str = ""
-    """For ``Outcome.UNBOUNDED``: which point or component the force acts on; else empty."""
+    """For ``Outcome.UNBOUNDED``: which point or component the force acts on; for ``Outcome.BACKEND_FAILED``: what
+    happened to the card; else empty."""
 
 
-def report_of(struct: _abi.shapeop_solve_report, message: str) -> Report:
+def report_of(struct: _abi.shapeop_solve_report, backend_reason: str, message: str) -> Report:
     """The library's report as a :class:`Report`."""
-    names = [field.name for field in dataclasses.fields(Report) if field.name != "message"]
+    texts = ("backend_reason", "message")
+    names = [field.name for field in dataclasses.fields(Report) if field.name not in texts]
     values = {name: getattr(struct, name) for name in names}
     values["outcome"] = Outcome(values["outcome"])
     values["linear_solver"] = LinearSolver(values["linear_solver"])
-    is_unbounded = values["outcome"] is Outcome.UNBOUNDED
-    return Report(**values, message=message if is_unbounded else "")
+    values["backend"] = Backend(values["backend"])
+    has_message = values["outcome"] in (Outcome.UNBOUNDED, Outcome.BACKEND_FAILED)
+    return Report(**values, backend_reason=backend_reason, message=message if has_message else "")

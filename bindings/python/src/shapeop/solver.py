@@ -22,13 +22,18 @@ from ._library import (
     text,
 )
 from ._progress import ProgressFunction, Watch
+from .backend import BackendInfo, info_of
 from .exploration import HARD, Exploring
-from .report import Acceleration, LinearSolver, Report, report_of
+from .report import Acceleration, Backend, LinearSolver, Report, report_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ._arrays import Doubles, Ids, Numbers, PointsLike, ScalarsLike
+
+
+_MOST_BYTES = 1 << 53
+"""Bytes from which on doubles, in which the library takes them, skip whole numbers."""
 
 
 class Solver(Exploring):
@@ -463,7 +468,8 @@ class Solver(Exploring):
             code = lib.shapeop_solveUntil(self._handle, pointers[0], watch.callback, None, pointers[1])
             check(code, self._handle)
             message = text(lib.shapeop_lastError(self._handle))
-        return report_of(report, message)
+            reason = text(lib.shapeop_backendReason(self._handle))
+        return report_of(report, reason, message)
 
     @property
     def energy(self) -> float:
@@ -497,6 +503,41 @@ class Solver(Exploring):
         """Sets how linear systems are solved: a :class:`LinearSolver` or its name in lower case."""
         number = _arrays.member(LinearSolver, linear_solver, "linear_solver")
         check(lib.shapeop_setLinearSolver(self._handle, number), self._handle)
+
+    @property
+    def backend(self) -> Backend:
+        """What carries out the iterations of the following solves. Setting takes a :class:`Backend` or its name in lower
+        case; ``"gpu"`` raises :class:`BackendError` where there is no graphics card, and in a library without the feature
+        ``gpu``. The report of a solve says what ran, and why.
+        """
+        return Backend(self._count(lib.shapeop_getBackend(self._handle)))
+
+    @backend.setter
+    def backend(self, backend: Union[Backend, str]) -> None:
+        number = _arrays.member(Backend, backend, "backend")
+        check(lib.shapeop_setBackend(self._handle, number), self._handle)
+
+    def set_backend_options(self, adapter: str = "", *, binding_bytes: int = 0, memory_bytes: int = 0) -> None:
+        """Chooses the graphics card of the following solves, and how much of it they may use.
+
+        ``adapter``: a part of its name, of any case; empty: any, the fastest kind first. ``binding_bytes``: of one binding
+        at most; 0: what the card allows. ``memory_bytes``: that the solver may take of the card; 0: no limit.
+        """
+        name = _arrays.name_bytes(adapter, "adapter")
+        most = [
+            float(_arrays.integer(number, word, 0, _MOST_BYTES))
+            for number, word in ((binding_bytes, "binding_bytes"), (memory_bytes, "memory_bytes"))
+        ]
+        check(lib.shapeop_setBackendOptions(self._handle, name, *most), self._handle)
+
+    def backend_info(self) -> BackendInfo:
+        """The graphics card of this solver. The first call takes a while: it opens it.
+
+        Raises :class:`BackendError` where there is none, and in a library without the feature ``gpu``.
+        """
+        info = _abi.shapeop_backend_info(struct_size=ctypes.sizeof(_abi.shapeop_backend_info))
+        check(lib.shapeop_backendInfo(self._handle, ctypes.byref(info)), self._handle)
+        return info_of(info)
 
     def _count(self, answer: int) -> int:
         """A count, truth or id that the library answered, where -1 is a refusal."""
