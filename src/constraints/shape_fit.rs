@@ -122,7 +122,7 @@ pub fn kernel_numbers(scalars: &[f64], known: (usize, f64), scale: Scale, unit: 
         // Relative, so that squares of tiny and huge coordinates stay in range.
         let greatest = (0..k).map(|j| own(j).abs().max_element()).fold(0.0, f64::max);
         let norm = (0..k).map(|j| (own(j) / greatest).length_squared()).sum::<f64>().sqrt();
-        let is_point = !(greatest > 0.0);
+        let is_point = greatest == 0.0;
         numbers.push(if is_point { 0.0 } else { in_units(greatest * norm) });
         numbers.extend((0..k).flat_map(|j| if is_point { [0.0; 3] } else { (own(j) / greatest / norm).to_array() }));
     }

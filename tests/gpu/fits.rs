@@ -153,8 +153,8 @@ fn judge(type_name: &str, samples: &[Sample], extent: impl Fn(&Compared<'_>) -> 
     assert_feasible(type_name, &unsure);
     let far: Vec<Unsure> = unsure.into_iter().filter(|one| one.excess > NEAR * one.size).collect();
     println!(
-        "{type_name}: {count}, largest difference {worst:.1e}; {unsure_count} judged by nearness, {generic} of random ones, {} by \
-         what round-off changes",
+        "{type_name}: {count}, largest difference {worst:.1e}; {unsure_count} judged by nearness, {generic} of random ones, \
+         {} by what round-off changes",
         far.len()
     );
     assert_within_round_off(type_name, &far);
@@ -369,8 +369,8 @@ fn points_that_are_named_twice() {
             if distance(cpu, gpu) <= NEAR {
                 continue;
             }
-            // Regular polygons of which the corners lie on a line can be in any plane; of quadrilaterals with two opposite
-            // corners at one place all directions of a rectangle's sides are as good.
+            // Regular polygons of which the corners lie on a line can be in any plane; of quadrilaterals with two
+            // opposite corners at one place all directions of a rectangle's sides are as good.
             let rows = centred(&list.iter().map(|&index| solver.points()[index as usize]).collect::<Vec<_>>());
             let excess = distance(gpu, &rows) - distance(cpu, &rows);
             assert!(excess <= NEAR, "{name} {list:?}: {cpu:?} {gpu:?}");
