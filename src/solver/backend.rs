@@ -115,11 +115,11 @@ pub fn backend_info(options: &BackendOptions) -> Result<BackendInfo> {
     }
 }
 
-/// Gives the graphics card back, with all memory that solvers have on it: for a host that needs it for something else. Solves
+/// Gives all graphics cards back, with all memory that solvers have on it: for a host that needs it for something else. Solves
 /// that run on it end with status `BackendFailed`, at the points of their last read-back; later ones open it again.
 pub fn release_backend() {
     #[cfg(feature = "gpu")]
-    super::gpu::Card::release();
+    super::gpu::Card::release(None);
 }
 
 /// What goes on in a solve.
@@ -178,6 +178,12 @@ impl Solver {
     /// As [`backend_info`].
     pub fn backend_info(&self) -> Result<BackendInfo> {
         backend_info(&self.backend_options)
+    }
+
+    /// Gives the card of this solver back, as [`release_backend`] does all.
+    pub fn release_backend(&self) {
+        #[cfg(feature = "gpu")]
+        super::gpu::Card::release(Some(&self.backend_options));
     }
 
     /// The projection of every constraint at the current points, by id, as one target per row of its type: relative to the mean

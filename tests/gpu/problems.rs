@@ -252,24 +252,34 @@ fn automatic_leaves_small_models_and_software_adapters_to_the_processor() {
     }
 }
 
-/// A dome of planar quads whose corners are held and whose middle is dragged.
+/// A parabola moved along another has planar quads; three corners are held, and the middle is dragged up by `lift`.
 fn dragged(backend: Backend, lift: f64) -> Solver {
-    let model = model("planar_quads", 400).unwrap();
+    let n = 15;
+    let points: Vec<DVec3> = (0..n * n)
+        .map(|i| {
+            let (x, y) = (f64::from(i % n) / 14.0, f64::from(i / n) / 14.0);
+            DVec3::new(x, y, x * (1.0 - x) + 0.7 * y * (1.0 - y))
+        })
+        .collect();
     let mut solver = Solver::new();
-    solver.set_points(&model.points).unwrap();
-    let quads = &model.groups[0].indices;
-    let ids: Vec<usize> = quads.chunks(4).map(|quad| solver.add_constraint("Plane", quad, 1.0).unwrap()).collect();
-    let anchor = solver.add_constraint("Closeness", &[0], 1.0).unwrap();
-    for i in 0..19 {
+    solver.set_points(&points).unwrap();
+    for corner in (0..n * (n - 1)).filter(|i| i % n + 1 < n) {
+        let quad = [corner, corner + 1, corner + n + 1, corner + n];
+        let id = solver.add_constraint("Plane", &quad, 1.0).unwrap();
+        solver.set_hard(&[id], true).unwrap();
+    }
+    for corner in [0, n - 1, n * (n - 1)] {
+        let id = solver.add_constraint("Closeness", &[corner], 1.0).unwrap();
+        solver.set_hard(&[id], true).unwrap();
+    }
+    for i in 0..n - 1 {
         solver.add_constraint("EdgeStrain", &[i, i + 1], 0.1).unwrap();
     }
-    solver.set_hard(&ids, true).unwrap();
-    solver.set_hard(&[anchor], true).unwrap();
     solver.set_backend(backend).unwrap();
     solver.set_objective(&Objective::default(), Default::default()).unwrap();
     solver.init().unwrap();
-    let target = solver.points()[210] + DVec3::new(0.0, 0.0, lift);
-    solver.set_handle(210, target).unwrap();
+    let middle = n * n / 2;
+    solver.set_handle(middle, points[middle as usize] + DVec3::new(0.0, 0.0, lift)).unwrap();
     solver
 }
 
@@ -278,8 +288,7 @@ fn hard_constraints_are_met_with_sweeps_on_the_card() {
     if !has_adapter() {
         return;
     }
-    // Where the handle is far away there is more than one minimum.
-    for (lift, nearest) in [(1e-3, Some(1e-6)), (0.05, None)] {
+    for lift in [0.01, 0.1] {
         let mut ends = Vec::new();
         for backend in [Backend::Cpu, Backend::Gpu] {
             let mut solver = dragged(backend, lift);
@@ -292,8 +301,7 @@ fn hard_constraints_are_met_with_sweeps_on_the_card() {
         }
         let apart = ends[0].0.iter().zip(&ends[1].0).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         println!("{apart:.1e} apart");
-        assert!(nearest.is_none_or(|nearest| apart < nearest), "{apart}");
-        assert!(ends[1].1 < 1.1 * ends[0].1);
+        assert!(apart < 1e-6, "{apart}");
     }
 }
 

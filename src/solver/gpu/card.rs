@@ -56,8 +56,8 @@ thread_local! {
     static BUDGET: Cell<[u64; 2]> = const { Cell::new([0, u64::MAX]) };
 }
 
-/// The card that was opened last.
-static SHARED: Mutex<Option<(BackendOptions, Arc<Card>)>> = Mutex::new(None);
+/// The cards that are open, with what they were asked for by.
+static SHARED: Mutex<Vec<(BackendOptions, Arc<Card>)>> = Mutex::new(Vec::new());
 
 fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
@@ -74,20 +74,19 @@ impl Card {
     /// Status `BackendUnavailable` where there is none.
     pub(in crate::solver) fn shared(options: &BackendOptions) -> Result<Arc<Self>> {
         let mut shared = locked(&SHARED);
-        if let Some((known, card)) = &*shared
-            && known == options
-            && card.check().is_ok()
-        {
+        shared.retain(|(_, card)| card.check().is_ok());
+        if let Some((_, card)) = shared.iter().find(|(known, _)| is_same(known, options)) {
             return Ok(card.clone());
         }
         let card = Arc::new(Self::open(options)?);
-        *shared = Some((options.clone(), card.clone()));
+        shared.push((options.clone(), card.clone()));
         Ok(card)
     }
 
-    /// Gives back the card that was opened last; what runs on it ends with `BackendFailed`.
-    pub(in crate::solver) fn release() {
-        if let Some((_, card)) = locked(&SHARED).take() {
+    /// Gives back the card that `options` ask for, or all; what runs on it ends with `BackendFailed`.
+    pub(in crate::solver) fn release(options: Option<&BackendOptions>) {
+        let released = |known: &BackendOptions| options.is_none_or(|options| is_same(known, options));
+        for (_, card) in locked(&SHARED).extract_if(.., |(known, _)| released(known)) {
             card.fail("the card was released");
             card.device.destroy();
         }
@@ -364,6 +363,11 @@ impl Card {
         });
         values.collect()
     }
+}
+
+/// True if the same card serves both.
+fn is_same(a: &BackendOptions, b: &BackendOptions) -> bool {
+    (&a.adapter, a.binding_bytes) == (&b.adapter, b.binding_bytes)
 }
 
 fn kind_of(info: &wgpu::AdapterInfo) -> AdapterKind {
