@@ -15,6 +15,7 @@ pub const COUNTS: [usize; 6] = [0, 1, 63, 64, 65, 10_001];
 pub struct Random(u64);
 
 /// One constraint on points of its own.
+#[derive(Clone)]
 pub struct Sample {
     pub points: Vec<DVec3>,
     /// `None`: the defaults.
