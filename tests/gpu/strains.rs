@@ -56,6 +56,8 @@ enum Shape {
     CollinearRest,
     /// A quad whose planes are not unique: the hard case of DiagonalDistance.
     HardCase,
+    /// A fold without one: it has no side to bend to.
+    Unfolded,
 }
 
 /// What is made again and again.
@@ -513,6 +515,17 @@ fn bend(coefficients: &[f64; 4], x: &[DVec3]) -> (DVec3, f64) {
     })
 }
 
+/// The two triangles turned about their edge until they lie in one plane.
+fn unfolded(rest: &[DVec3]) -> Vec<DVec3> {
+    let along = (rest[1] - rest[0]).normalize_or_zero();
+    let split = |point: DVec3| {
+        let edge = point - rest[0];
+        (edge.dot(along), edge - edge.dot(along) * along)
+    };
+    let ((_, beside), (ahead, off)) = (split(rest[2]), split(rest[3]));
+    vec![rest[0], rest[1], rest[2], rest[0] + ahead * along - off.length() * beside.normalize_or_zero()]
+}
+
 #[test]
 fn pairs_of_triangles_are_bent_alike() {
     let of = |found: &Compared<'_>| bend(&stencil(rest(found)), &found.sample.points);
@@ -530,7 +543,13 @@ fn pairs_of_triangles_are_bent_alike() {
             off(targets[0].length(), &[found.scalars[0] * n, found.scalars[1] * n])
         },
     };
-    check("Bending", 4, 15, &law, |random, _, sample| sample.scalars = Some(range(random)));
+    check("Bending", 4, 15, &law, |random, shape, sample| {
+        sample.scalars = Some(range(random));
+        if random.below(10) == 0 {
+            *shape = Shape::Unfolded;
+            sample.points = unfolded(sample.rest.as_ref().unwrap());
+        }
+    });
 }
 
 #[test]
