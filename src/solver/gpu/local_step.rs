@@ -271,3 +271,102 @@ pub(super) fn images(batch: &dyn Batch, slot: usize, points: &[DVec3]) -> Vec<DV
         Rows::Pairs => indices.chunks_exact(2).map(|pair| at(&pair[1]) - at(&pair[0])).collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constraints::types;
+    use crate::solver::{BackendOptions, Solver};
+
+    /// More than a workgroup of constraints of one type, off rest, with weights of their own; `None` if it takes a shape.
+    fn model(type_name: &str, points_each: usize) -> Option<(Solver, Vec<f64>)> {
+        const COUNT: usize = 70;
+        // Points as irregular as they come, without two alike.
+        let place = |n: usize, phase: f64| {
+            let at = |step: f64| (n as f64 * step + phase).sin();
+            DVec3::new(at(1.7), at(2.9), at(4.3)) + 0.3 * DVec3::new(at(11.1), at(7.7), at(5.9))
+        };
+        let points = |phase: f64| (0..COUNT * points_each).map(|n| 5.0 * place(n, phase)).collect::<Vec<_>>();
+        let mut solver = Solver::new();
+        solver.set_points(&points(0.0)).unwrap();
+        for i in 0..COUNT {
+            let indices: Vec<u32> = (i * points_each..(i + 1) * points_each).map(|n| n as u32).collect();
+            solver.add_constraint(type_name, &indices, 1.0).ok()?;
+        }
+        solver.set_points(&points(0.4)).unwrap();
+        Some((solver, (0..COUNT).map(|i| 1.0 + i as f64 / 10.0).collect()))
+    }
+
+    /// `s Aᵀ e` on each point, of constraint `slot` with residuals `e` in the card's unit.
+    fn pulls(batch: &dyn Batch, slot: usize, s: f64, unit: f64, residuals: &[DVec3]) -> Vec<DVec3> {
+        let k = batch.indices(slot).len();
+        let s = s / (unit * unit);
+        match batch.info().rows {
+            Rows::Centred => {
+                let mean = residuals.iter().sum::<DVec3>() / k as f64;
+                residuals.iter().map(|residual| s * (*residual - mean)).collect()
+            }
+            Rows::Linear(_) => {
+                let rows = || batch.rows(slot).chunks_exact(k).zip(residuals);
+                (0..k).map(|j| s * rows().map(|(row, e)| unit * row[j] * *e).sum::<DVec3>()).collect()
+            }
+            Rows::Pairs => residuals.iter().flat_map(|residual| [-s * *residual, s * *residual]).collect(),
+        }
+    }
+
+    fn results(solver: &Solver, card: &Card, stiffness: &[Vec<f64>], wants: Wants) -> (LocalStep, Vec<Vec<Four>>) {
+        let frame = Frame::of(&solver.points);
+        let buffers = PointBuffers::new(card, solver.points.len()).unwrap();
+        buffers.upload(card, &frame, &solver.points);
+        let step = LocalStep::new(card, &solver.constraints, stiffness, &frame, &buffers, wants).unwrap();
+        card.submit(&step.runs);
+        let pages: Vec<_> = step.pages.iter().map(|(buffer, count)| (buffer, *count)).collect();
+        let results = card.read(&pages).unwrap();
+        (step, results)
+    }
+
+    /// Compares what kernels add to points with the residuals that they tell, whichever way they write them.
+    #[test]
+    fn pulls_and_energies_are_those_of_the_residuals() {
+        let Ok(card) = Card::shared(&BackendOptions::default()) else {
+            return eprintln!("LEFT OUT: there is no adapter");
+        };
+        let mut compared = 0;
+        for info in types() {
+            for k in [info.least_indices, info.greatest_indices.unwrap_or(6)] {
+                let Some((solver, stiffness)) = model(info.name, k) else { continue };
+                let of_batch = |(batch, _): (&dyn Batch, &[f64])| stiffness[..batch.len()].to_vec();
+                let stiffness: Vec<Vec<f64>> = solver.constraints.batches().map(of_batch).collect();
+                let (step, of_rows) = results(&solver, &card, &stiffness, Wants::Rows);
+                let (_, of_points) = results(&solver, &card, &stiffness, Wants::Pulls);
+                let size = Frame::of(&solver.points).size;
+                for bucket in &step.buckets {
+                    let batch = solver.constraints.batch(bucket.batch);
+                    let unit = row_unit(batch.kernel(), size);
+                    for (i, &slot) in bucket.slots.iter().enumerate() {
+                        let own = |page: &[Four], count: usize| -> Vec<Four> {
+                            (0..count).map(|n| page[bucket.first + n * bucket.slots.len() + i]).collect()
+                        };
+                        let (rows, found) = (own(&of_rows[0], bucket.results), own(&of_points[0], k));
+                        let residuals: Vec<DVec3> = rows.iter().map(|row| vector(*row)).collect();
+                        let s = stiffness[bucket.batch][slot as usize];
+                        let expected = pulls(batch, slot as usize, s, unit, &residuals);
+                        let most = expected.iter().map(|pull| pull.length()).fold(f64::MIN_POSITIVE, f64::max);
+                        for (expected, found) in expected.iter().zip(&found) {
+                            let off = expected.distance(vector(*found));
+                            assert!(off <= 1e-5 * most, "{} {slot}: {expected} {found:?}", info.name);
+                        }
+                        let energy = |all: &[Four]| all.iter().map(|four| f64::from(four[3])).sum::<f64>();
+                        let expected: f64 =
+                            residuals.iter().map(|e| 0.5 * s / (unit * unit) * e.length_squared()).sum();
+                        for found in [energy(&rows), energy(&found)] {
+                            assert!((found - expected).abs() <= 1e-5 * expected, "{}: {expected} {found}", info.name);
+                        }
+                        compared += usize::from(expected > 0.0);
+                    }
+                }
+            }
+        }
+        assert!(compared > 1000, "only {compared} had residuals");
+    }
+}

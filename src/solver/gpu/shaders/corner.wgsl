@@ -79,7 +79,10 @@ fn corner_doubled_share(a: f32, b: f32, eta: vec2f) -> vec2f {
     let share = vec2f(a + b * (1.0 - 2.0 * eta.y * eta.y), b * (2.0 * eta.y * eta.x));
     let most = max(abs(share.x), share.y);
     // Equal edges at a right angle: either may turn.
-    return select(vec2f(1.0, 0.0), normalize(share / max(most, CORNER_SHORTEST)), most > CORNER_SHORTEST);
+    if most < CORNER_SHORTEST {
+        return vec2f(1.0, 0.0);
+    }
+    return normalize(share / most);
 }
 
 // The cosine and sine of half the angle within 0..π that has these.
