@@ -91,7 +91,9 @@ impl Machine {
     fn of(run: &Run) -> Self {
         let report = &run.report;
         let is_gpu = report.backend == Backend::Gpu;
-        let card = || run.solver.backend_info().ok().map(|info| format!("{} ({}, {})", info.adapter, info.kind.text(), info.api));
+        let card = || {
+            run.solver.backend_info().ok().map(|info| format!("{} ({}, {})", info.adapter, info.kind.text(), info.api))
+        };
         Self {
             used: if is_gpu { "gpu" } else { "cpu" },
             reason: report.backend_reason.clone(),
