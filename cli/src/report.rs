@@ -79,6 +79,8 @@ pub struct Machine {
     pub used: &'static str,
     /// Why, in words.
     pub reason: String,
+    /// What happened to the card, if it was lost or refused work.
+    pub fault: Option<String>,
     /// The card, if it made any of the iterations.
     pub adapter: Option<String>,
     pub gpu_iterations: u32,
@@ -97,6 +99,7 @@ impl Machine {
         Self {
             used: if is_gpu { "gpu" } else { "cpu" },
             reason: report.backend_reason.clone(),
+            fault: (report.outcome == Outcome::BackendFailed).then(|| report.message.clone()),
             adapter: if is_gpu { card() } else { None },
             gpu_iterations: report.gpu_iterations,
             gpu_seconds: report.gpu_seconds,

@@ -508,8 +508,8 @@ class Solver(Exploring):
     def backend(self) -> Backend:
         """What carries out the iterations of the following solves.
 
-        Setting takes a :class:`Backend` or its name in lower case; ``"gpu"`` raises :class:`BackendError` where there is
-        no graphics card, and in a library without the feature ``gpu``. The report of a solve says what ran, and why.
+        Setting takes a :class:`Backend` or its name in lower case; ``"gpu"`` raises :class:`BackendError` where there
+        is no graphics card, and in a library without the feature ``gpu``. The report of a solve says what ran, and why.
         """
         return Backend(self._count(lib.shapeop_getBackend(self._handle)))
 
