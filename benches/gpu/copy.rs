@@ -56,11 +56,10 @@ pub fn bandwidth(adapter: &str) -> Outcome<f64> {
         compilation_options: Default::default(),
         cache: None,
     });
-    let entry = |(binding, buffer): (u32, &wgpu::Buffer)| wgpu::BindGroupEntry {
-        binding,
-        resource: buffer.as_entire_binding(),
-    };
-    let entries: Vec<_> = (0..).zip(&buffers).map(|(i, buffer)| entry((i, buffer))).collect();
+    let numbered = (0..).zip(&buffers);
+    let entries: Vec<_> = numbered
+        .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+        .collect();
     let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &pipeline.get_bind_group_layout(0),

@@ -16,6 +16,7 @@ use shapeop::solver::{AdapterKind, BackendInfo, BackendOptions, backend_info};
 
 const USAGE: &str = "usage:
   gpu adapter                      the card, or why there is none
+  gpu bandwidth                    bytes per second that a kernel copies, reading and writing counted
   gpu accuracy [NAMES [VERTICES]]  energies against those of the processor, and the tolerance asked for
   gpu speed [NAMES [SIZES]]        ms per iteration against the processor with all cores, and time to a tolerance
 NAMES and SIZES are separated by commas";
@@ -36,6 +37,10 @@ fn main() -> Outcome<()> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["adapter"] => println!("{}", adapter()),
+        ["bandwidth"] => {
+            let info = backend_info(&BackendOptions::default())?;
+            println!("{}", json!({"adapter": info.adapter, "bytes_per_second": copy::bandwidth(&info.adapter)?}));
+        }
         ["accuracy", rest @ ..] => {
             let names = rest.first().unwrap_or(&ACCURACY_NAMES).split(',');
             let size = rest.get(1).unwrap_or(&ACCURACY_SIZE).parse()?;

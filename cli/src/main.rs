@@ -33,6 +33,8 @@ pub enum Ending {
     Interrupted,
     /// Hard constraints contradict each other; what meets the others is written.
     Infeasible,
+    /// The graphics card was lost or refused work; what was reached is written.
+    BackendFailed,
 }
 
 /// The exit code where hard constraints contradict each other.
@@ -71,6 +73,11 @@ fn main() -> ExitCode {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
         Ok(Ending::Infeasible) => ExitCode::from(INFEASIBLE),
+        Ok(Ending::BackendFailed) => {
+            let text = "the graphics card failed; what was reached is written, and the report says what happened";
+            let _ = writeln!(std::io::stderr(), "error: {text}");
+            ExitCode::FAILURE
+        }
         Err(error) => {
             // A closed standard error leaves the exit code to tell.
             let _ = writeln!(std::io::stderr(), "error: {error:#}");

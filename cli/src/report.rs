@@ -79,6 +79,8 @@ pub struct Machine {
     pub used: &'static str,
     /// Why, in words.
     pub reason: String,
+    /// What happened to the card, if it was lost or refused work.
+    pub fault: Option<String>,
     /// The card, if it made any of the iterations.
     pub adapter: Option<String>,
     pub gpu_iterations: u32,
@@ -91,10 +93,13 @@ impl Machine {
     fn of(run: &Run) -> Self {
         let report = &run.report;
         let is_gpu = report.backend == Backend::Gpu;
-        let card = || run.solver.backend_info().ok().map(|info| format!("{} ({}, {})", info.adapter, info.kind.text(), info.api));
+        let card = || {
+            run.solver.backend_info().ok().map(|info| format!("{} ({}, {})", info.adapter, info.kind.text(), info.api))
+        };
         Self {
             used: if is_gpu { "gpu" } else { "cpu" },
             reason: report.backend_reason.clone(),
+            fault: (report.outcome == Outcome::BackendFailed).then(|| report.message.clone()),
             adapter: if is_gpu { card() } else { None },
             gpu_iterations: report.gpu_iterations,
             gpu_seconds: report.gpu_seconds,

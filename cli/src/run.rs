@@ -107,15 +107,11 @@ pub fn run(problem: &Problem, settings: &Settings, iterate: &IterateArgs, is_qui
             progress.finish();
             bail!("unbounded, nothing was solved: {}", report.message);
         }
-        if report.outcome == Outcome::BackendFailed {
-            progress.finish();
-            bail!("the graphics card failed: {}", report.message);
-        }
         steps = step;
         let moved = last.iter().zip(solver.points()).map(|(last, now)| last.distance(*now)).fold(0.0, f64::max);
         history.steps.push((report.energy_after, if diagonal > 0.0 { moved / diagonal } else { moved }));
         last.copy_from_slice(solver.points());
-        let is_over = is_interrupted() || report.outcome == Outcome::TimeBudget;
+        let is_over = is_interrupted() || matches!(report.outcome, Outcome::TimeBudget | Outcome::BackendFailed);
         total = Some(match total {
             None => report,
             Some(before) => joined(before, report),

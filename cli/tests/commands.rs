@@ -8,6 +8,7 @@ use glam::DVec3;
 use serde_json::Value;
 use shapeop::mesh::measure::{self, Spread};
 use shapeop::mesh::{Mesh, file};
+use shapeop::solver::{BackendOptions, backend_info};
 
 use program::{Folder, assert_close, example, json, mesh_path, png_size, refused, said, shapeop, shapeop_into};
 
@@ -351,4 +352,32 @@ fn ctrl_c_stops_and_writes_what_was_reached() {
     assert_report_is_true(&report, &before, &after);
     assert!(planarity(&after).max < planarity(&before).max);
     assert!(text.contains("stopped with Ctrl-C after"), "{text}");
+}
+
+#[test]
+fn the_backend_is_chosen_and_the_report_says_what_ran() {
+    let folder = Folder::new("backend");
+    let problem = example("circularize.json");
+    assert!(refused(&shapeop(&["solve", &problem, "--backend", "card"]), 2).contains("automatic"));
+    let report = |backend: &str| {
+        let output = shapeop_into(&folder, &["solve", &problem, "--backend", backend, "--picture", "none"]);
+        (output.status.success(), json(&folder.path("circularize.solve.json"))["backend"].clone(), output)
+    };
+    for backend in ["cpu", "automatic"] {
+        let (is_done, found, _) = report(backend);
+        assert!(is_done && found["reason"].is_string() && found["fault"].is_null(), "{found}");
+        assert_eq!(found["used"] == "gpu", found["gpu_iterations"] != 0);
+        assert!(backend == "automatic" || found["used"] == "cpu");
+        assert_eq!(found["used"] == "gpu", found["adapter"].is_string());
+    }
+    let (is_done, found, output) = report("gpu");
+    match backend_info(&BackendOptions::default()) {
+        // The library says why: there is no card, or it was built without the feature.
+        Err(error) => assert!(refused(&output, 1).contains(&error.to_string())),
+        Ok(info) => {
+            assert!(is_done && found["used"] == "gpu" && found["gpu_iterations"] != 0, "{found}");
+            assert!(found["adapter"].as_str().unwrap().starts_with(&info.adapter));
+            assert!(said(&output).contains(&info.adapter));
+        }
+    }
 }

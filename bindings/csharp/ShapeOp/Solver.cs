@@ -242,7 +242,9 @@ namespace ShapeOp
             handle.Check(code);
             bool hasMessage = report.outcome == Outcome.Unbounded || report.outcome == Outcome.BackendFailed;
             string message = hasMessage ? Text.FromLibrary(Native.shapeop_lastError(handle)) : null;
-            return new Report(report, Text.FromLibrary(Native.shapeop_backendReason(handle)), message);
+            // Whoever disposed of the solver in the callback asks for nothing more.
+            string reason = handle.IsClosed ? "" : Text.FromLibrary(Native.shapeop_backendReason(handle));
+            return new Report(report, reason, message);
         }
 
         /// <summary>

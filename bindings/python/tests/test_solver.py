@@ -12,7 +12,7 @@ import pytest
 import shapeop
 from near import assert_near
 from samples import SQUARE, saddle, sheet
-from shapeop import Acceleration, Backend, LinearSolver, Outcome, Solver, _library
+from shapeop import Acceleration, Backend, ErrorCode, LinearSolver, Outcome, Solver, _abi, _library, backend
 from shapeop import solver as solver_module
 
 
@@ -251,22 +251,29 @@ def test_the_backend_is_taken_by_name_and_by_member_and_the_report_says_what_ran
 
 
 def test_a_library_without_the_feature_says_so() -> None:
+    # That of these tests is built without it.
     with sheet(4) as solver:
-        try:
-            info = solver.backend_info()
-        except shapeop.BackendError as error:
-            # That of these tests, unless somebody puts another in its place.
-            assert error.code is shapeop.ErrorCode.BACKEND_UNAVAILABLE
-            assert str(error) == 'this library was built without the feature "gpu"'
-            with pytest.raises(shapeop.BackendError, match="feature"):
-                solver.backend = "gpu"
-            assert solver.backend is Backend.CPU
-        else:
-            assert info.adapter
-            assert isinstance(info.kind, shapeop.AdapterKind)
-            assert info.buffer_bytes >= info.binding_bytes > 0
+        with pytest.raises(shapeop.BackendError) as caught:
+            solver.backend_info()
+        assert caught.value.code is ErrorCode.BACKEND_UNAVAILABLE
+        assert str(caught.value) == 'this library was built without the feature "gpu"'
+        with pytest.raises(shapeop.BackendError, match="feature"):
             solver.backend = "gpu"
-            assert solver.backend is Backend.GPU
+        assert solver.backend is Backend.CPU
+
+
+def test_a_description_of_a_card_is_read_as_it_is_told() -> None:
+    struct = _abi.shapeop_backend_info(
+        kind=_abi.SO_ADAPTER_INTEGRATED,
+        group_count=65535,
+        buffer_bytes=2.0**40,
+        binding_bytes=2.0**31 - 4,
+        adapter="Kärtchen".encode(),
+        api=b"vulkan",
+        driver=b"1.2",
+    )
+    info = backend.info_of(struct)
+    assert info == (shapeop.AdapterKind.INTEGRATED, 65535, 2**40, 2**31 - 4, "Kärtchen", "vulkan", "1.2")
 
 
 def test_a_solver_is_deleted_when_closed_and_when_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -212,6 +212,7 @@ pub fn ending(found: &Run) -> Ending {
     match found.report.outcome {
         _ if found.was_interrupted => Ending::Interrupted,
         Outcome::Infeasible => Ending::Infeasible,
+        Outcome::BackendFailed => Ending::BackendFailed,
         _ => Ending::Done,
     }
 }

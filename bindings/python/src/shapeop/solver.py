@@ -506,9 +506,10 @@ class Solver(Exploring):
 
     @property
     def backend(self) -> Backend:
-        """What carries out the iterations of the following solves. Setting takes a :class:`Backend` or its name in lower
-        case; ``"gpu"`` raises :class:`BackendError` where there is no graphics card, and in a library without the feature
-        ``gpu``. The report of a solve says what ran, and why.
+        """What carries out the iterations of the following solves.
+
+        Setting takes a :class:`Backend` or its name in lower case; ``"gpu"`` raises :class:`BackendError` where there
+        is no graphics card, and in a library without the feature ``gpu``. The report of a solve says what ran, and why.
         """
         return Backend(self._count(lib.shapeop_getBackend(self._handle)))
 
@@ -520,8 +521,8 @@ class Solver(Exploring):
     def set_backend_options(self, adapter: str = "", *, binding_bytes: int = 0, memory_bytes: int = 0) -> None:
         """Chooses the graphics card of the following solves, and how much of it they may use.
 
-        ``adapter``: a part of its name, of any case; empty: any, the fastest kind first. ``binding_bytes``: of one binding
-        at most; 0: what the card allows. ``memory_bytes``: that the solver may take of the card; 0: no limit.
+        ``adapter``: a part of its name, of any case; empty: any, the fastest kind first. ``binding_bytes``: of one
+        binding at most; 0: what the card allows. ``memory_bytes``: that the solver may take of it; 0: no limit.
         """
         name = _arrays.name_bytes(adapter, "adapter")
         most = [
