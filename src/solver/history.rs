@@ -405,9 +405,14 @@ mod tests {
         for a in 0..capacity {
             (combination.moves[a], combination.changes[a]) = (0.5 - a as f64, 0.5 - a as f64);
             assert_eq!(euclidean.products().change_plain(a), any.products().change_plain(a));
-            assert!((0..capacity).all(|b| euclidean.products().change_change(a, b) == any.products().change_change(a, b)));
+            assert!(
+                (0..capacity).all(|b| euclidean.products().change_change(a, b) == any.products().change_change(a, b))
+            );
         }
-        assert_eq!(euclidean.products().plain_squared(), any.products().plain_along(&Combination { plain: 1.0, ..zeros(capacity) }));
+        assert_eq!(
+            euclidean.products().plain_squared(),
+            any.products().plain_along(&Combination { plain: 1.0, ..zeros(capacity) })
+        );
         let direction = |history: &mut History| {
             let mut direction = vec![DVec3::ZERO; n];
             history.combine(&combination, &mut direction, false);

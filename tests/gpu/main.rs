@@ -7,9 +7,9 @@ mod kernels;
 #[allow(dead_code, reason = "each program takes what it needs")]
 mod models;
 mod problems;
-mod strains;
 #[path = "../programs/mod.rs"]
 mod programs;
+mod strains;
 
 use shapeop::solver::{BackendOptions, backend_info};
 
