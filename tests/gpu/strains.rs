@@ -681,6 +681,45 @@ fn diagonals_are_brought_together_alike() {
     });
 }
 
+/// Where the nearest element is not unique, or the processor leaves what spans no plane, the card does as the processor.
+#[test]
+fn choices_are_those_of_the_processor() {
+    const TYPES: [(&str, usize, Shape); 8] = [
+        ("EdgeStrain", 2, Shape::Point),
+        ("EdgeLength", 2, Shape::Point),
+        ("EqualLengths", 4, Shape::Repeated),
+        ("TriangleStrain", 3, Shape::Point),
+        ("TetrahedronStrain", 4, Shape::Point),
+        ("Volume", 4, Shape::Point),
+        ("Angle", 3, Shape::Collinear),
+        ("BoundedAngle", 3, Shape::Collinear),
+    ];
+    let mut random = Random::new(26);
+    for (type_name, k, shape) in TYPES {
+        let made = |_| {
+            // Large enough for points of double precision to be along a line.
+            let mut made = sample(shape, k, 1.0, &mut random);
+            let size = random.within(1.0, 100.0);
+            match type_name {
+                "Angle" | "BoundedAngle" => {
+                    made.points = collinear(k, 1e3 * random.vector(), size, &mut random);
+                    made.scalars = Some(angles(&mut random));
+                }
+                "EqualLengths" => made.points[3] = made.points[2],
+                _ => {}
+            }
+            made
+        };
+        let samples: Vec<Sample> = (0..1000).map(made).collect();
+        compare(type_name, &samples, |id, found| {
+            // Stretches are compared with 1, what they are at rest.
+            let least = if type_name == "Volume" { 1.0 } else { 0.0 };
+            let size = diameter(&found.sample.points).max(longest(&found.cpu)).max(least);
+            assert!(found.difference() <= NEAR * size, "{type_name} {id}: {:?} {:?}", found.cpu, found.gpu);
+        });
+    }
+}
+
 /// Coordinates of all magnitudes beside each other, at rest and now: what the answers are is of no interest, but that there are.
 #[test]
 fn whatever_the_points_answers_are_finite() {
