@@ -68,13 +68,16 @@ pub(crate) trait Batch: Any + Send + Sync {
     fn is_degenerate(&self, slot: usize) -> bool;
 
     /// How graphics cards project the type.
+    #[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "asked by cards alone"))]
     fn kernel(&self) -> Kernel;
 
     /// Appends the numbers that the kernel reads of a slot: the coefficients of the rows, in the row unit of coordinates
     /// divided by `size`, then the type's own.
+    #[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "asked by cards alone"))]
     fn kernel_numbers(&self, slot: usize, size: f64, numbers: &mut Vec<f64>);
 
     /// A place in the model that the kernel reads after the numbers.
+    #[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "asked by cards alone"))]
     fn kernel_place(&self, slot: usize) -> Option<DVec3>;
 
     /// Bytes of what projecting all constraints reads besides the points: indices, scalars and rest states.

@@ -123,6 +123,7 @@ pub fn release_backend() {
 }
 
 /// What goes on in a solve.
+#[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "asked by cards alone"))]
 pub(super) struct Course<'a, 'b> {
     pub(super) options: &'a SolveOptions,
     pub(super) started: Instant,

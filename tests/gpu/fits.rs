@@ -207,7 +207,7 @@ fn assert_within_round_off(type_name: &str, far: &[Unsure]) {
 fn samples(random: &mut Random, count: usize, point_counts: &[usize]) -> Vec<Sample> {
     let sample = |id: usize| {
         let k = point_counts[(id / KINDS) % point_counts.len()];
-        let rest = (id % 2 == 0).then(|| placed(random, k, id / 3 % KINDS));
+        let rest = id.is_multiple_of(2).then(|| placed(random, k, id / 3 % KINDS));
         Sample { points: placed(random, k, id % KINDS), scalars: None, rest }
     };
     (0..count).map(sample).collect()
@@ -263,7 +263,11 @@ fn points_in_planes_of_given_normals() {
         let sample = |id: usize| {
             let k = [3, 4, 5, 40][id / KINDS % 4];
             let scalars = (random.size() * random.vector()).to_array().to_vec();
-            Sample { points: placed(&mut random, k, id % KINDS), scalars: (id % 4 > 0).then_some(scalars), rest: None }
+            Sample {
+                points: placed(&mut random, k, id % KINDS),
+                scalars: (!id.is_multiple_of(4)).then_some(scalars),
+                rest: None,
+            }
         };
         compare("Orientation", &(0..count).map(sample).collect::<Vec<_>>(), |id, found| {
             let size = diameter(&found.sample.points);
@@ -278,13 +282,13 @@ fn points_on_given_planes_and_lines() {
     for (count, name) in COUNTS.into_iter().flat_map(|count| [(count, "OnPlane"), (count, "OnLine")]) {
         let sample = |id: usize| {
             let point = 1e3 * random.vector();
-            let place = if id % 5 == 0 { point } else { point + random.size() * random.vector() };
+            let place = if id.is_multiple_of(5) { point } else { point + random.size() * random.vector() };
             let axis = random.size() * random.vector();
             let scalars = [place.to_array(), axis.to_array()].concat();
             Sample {
                 points: vec![point],
-                scalars: (id % 7 > 0).then_some(scalars),
-                rest: (id % 7 == 0).then(|| vec![place]),
+                scalars: (!id.is_multiple_of(7)).then_some(scalars),
+                rest: id.is_multiple_of(7).then(|| vec![place]),
             }
         };
         compare(name, &(0..count).map(sample).collect::<Vec<_>>(), |id, found| {
@@ -309,7 +313,7 @@ fn templates_and_points(random: &mut Random, id: usize, scaled: bool) -> Sample 
             shape(random, k, kind).into_iter().map(|point| place + size * (turn * point)).collect()
         })
         .collect();
-    let points = if id / KINDS % 2 == 0 {
+    let points = if (id / KINDS).is_multiple_of(2) {
         let scale = if scaled { random.size() / unit } else { 1.0 };
         let own = &templates[random.below(template_count)];
         // Of a template that is a point only noise has a size.
@@ -324,7 +328,7 @@ fn templates_and_points(random: &mut Random, id: usize, scaled: bool) -> Sample 
         shape(random, k, id % KINDS).into_iter().map(|point| place + size * (turn * point)).collect()
     };
     let scalars = templates.iter().flatten().flat_map(|point| point.to_array()).collect();
-    if id % 9 == 0 {
+    if id.is_multiple_of(9) {
         return Sample { points, scalars: None, rest: Some(templates[0].clone()) };
     }
     Sample { points, scalars: Some(scalars), rest: None }
@@ -362,7 +366,9 @@ fn points_that_are_named_twice() {
         let mut solver = Solver::new();
         let rest: Vec<DVec3> = (0..6).map(|_| random.vector()).collect();
         solver.set_points(&rest).unwrap();
-        lists.iter().for_each(|list| drop(solver.add_constraint(name, list, 1.0).unwrap()));
+        for list in &lists {
+            solver.add_constraint(name, list, 1.0).unwrap();
+        }
         solver.set_points(&(0..6).map(|_| 3.0 * random.vector()).collect::<Vec<_>>()).unwrap();
         let (cpu, gpu) = (solver.projections(Backend::Cpu).unwrap(), solver.projections(Backend::Gpu).unwrap());
         for (list, (cpu, gpu)) in lists.iter().zip(cpu.iter().zip(&gpu)) {

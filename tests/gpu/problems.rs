@@ -119,7 +119,9 @@ fn a_model_that_would_drift_is_left_to_the_processor() {
     let mut solver = Solver::new();
     let points: Vec<DVec3> = (0..20).map(|i| DVec3::new(f64::from(i), f64::from(i % 2), f64::from(i % 3))).collect();
     solver.set_points(&points).unwrap();
-    (0..17).for_each(|i| drop(solver.add_constraint("Bending", &[i, i + 1, i + 2, i + 3], 1.0).unwrap()));
+    for i in 0..17 {
+        solver.add_constraint("Bending", &[i, i + 1, i + 2, i + 3], 1.0).unwrap();
+    }
     solver.set_backend(Backend::Gpu).unwrap();
     solver.init().unwrap();
     let error = solver.solve(1).unwrap_err();

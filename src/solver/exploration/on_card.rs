@@ -31,7 +31,9 @@ mod without_card {
 
     /// What an exploration has on the card: nothing.
     #[derive(Default)]
-    pub(in super::super) struct CardState;
+    pub(in super::super) struct CardState {
+        _nothing: (),
+    }
 
     impl Engine {
         pub(in super::super) fn sweep_ahead(
@@ -202,7 +204,8 @@ mod with_card {
     }
 }
 
-#[cfg(all(test, feature = "gpu"))]
+#[cfg(feature = "gpu")]
+#[cfg(test)]
 mod tests {
     use std::ops::ControlFlow;
 
@@ -212,8 +215,11 @@ mod tests {
     use crate::problem::Objective;
     use crate::solver::{Backend, BackendOptions, Report, Solver, backend_info};
 
-    /// Grids of 6 by 6 points with constraints of these types, hard and soft.
-    fn solver(hard: &[(&str, u32)], soft: &[(&str, u32)]) -> Solver {
+    /// Names of types, and how many points a constraint of each has.
+    type Types<'a> = &'a [(&'a str, u32)];
+
+    /// A grid of 6 by 6 points with constraints of these types, hard and soft.
+    fn solver(hard: Types<'_>, soft: Types<'_>) -> Solver {
         let points: Vec<DVec3> = (0..36_u32)
             .map(|i| {
                 let (x, y) = (f64::from(i % 6), f64::from(i / 6));
@@ -246,7 +252,7 @@ mod tests {
             eprintln!("LEFT OUT: {error}");
             return;
         }
-        let cases: [(&[(&str, u32)], &[(&str, u32)]); 6] = [
+        let cases: [(Types<'_>, Types<'_>); 6] = [
             (&[("Plane", 4)], &[]),
             (&[("Plane", 4)], &[("EdgeStrain", 2), ("Closeness", 1)]),
             (&[("EdgeStrain", 2)], &[]),

@@ -11,12 +11,15 @@ use crate::error::Result;
 use crate::linalg::rows::SparseRows;
 use crate::linalg::symmetric::SymmetricMatrix;
 
+/// What is told row, column and value of an entry.
+type Visit<'a> = dyn FnMut(u32, u32, f64) + 'a;
+
 /// `Q`, both triangles: what constraints contribute whose targets never change, and what `others` visit of the lower triangle.
 pub(in crate::solver) fn matrix(
     constraints: &ConstraintSet,
     stiffness: &[Vec<f64>],
     point_count: usize,
-    others: &dyn Fn(&mut dyn FnMut(u32, u32, f64)),
+    others: &dyn Fn(&mut Visit<'_>),
 ) -> Result<SparseRows> {
     // A matrix has at least one row.
     let n = point_count.max(1);
@@ -35,7 +38,7 @@ pub(in crate::solver) fn matrix(
 }
 
 /// Calls `visit(i, j, value)` for every contribution to the lower triangle of `Q`.
-fn each_entry(constraints: &ConstraintSet, stiffness: &[Vec<f64>], visit: &mut dyn FnMut(u32, u32, f64)) {
+fn each_entry(constraints: &ConstraintSet, stiffness: &[Vec<f64>], visit: &mut Visit<'_>) {
     for (index, (batch, _)) in constraints.batches().enumerate() {
         if batch.kernel() != Kernel::Constant {
             continue;

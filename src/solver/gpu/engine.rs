@@ -244,8 +244,11 @@ pub(in crate::solver) struct Now<'a> {
     /// Weight times measure, by batch and slot.
     pub(in crate::solver) stiffness: &'a [Vec<f64>],
     /// `C` at points, without the constraints, and the energy there.
-    pub(in crate::solver) constants: &'a dyn Fn(&[DVec3]) -> (Vec<DVec3>, f64),
+    pub(in crate::solver) constants: &'a ConstantsAt<'a>,
 }
+
+/// Pulls and energy at points.
+pub(in crate::solver) type ConstantsAt<'a> = dyn Fn(&[DVec3]) -> (Vec<DVec3>, f64) + 'a;
 
 impl Engine {
     /// Begins at `points`: uploads them unless the card has them, and the terms that are linear in them.
@@ -353,14 +356,10 @@ impl Engine {
         Ok(ReadBack { iterations, evaluations, energy, largest_move, is_turn: is_turn || iterations < count, is_stuck })
     }
 
-    /// The linear solve.
-    fn solving(&self) -> impl Iterator<Item = &Run> {
-        self.gradients.start.iter().chain((0..self.steps).flat_map(|_| &self.gradients.step))
-    }
-
     fn plain_iterations(&mut self, count: u32) {
         for _ in 0..count {
-            self.card.submit(self.solving().chain(&self.moving));
+            self.gradients.submit(&self.card, self.steps);
+            self.card.submit(&self.moving);
             if !self.has_host() {
                 self.card.submit(&self.projecting);
             }
@@ -392,7 +391,7 @@ impl Engine {
     /// One iteration from points of `energy`; returns the number of evaluations, too.
     fn accelerated_iteration(&mut self, energy: f64, chooser: &mut Chooser) -> Result<(Trial, u32)> {
         let Some(mut history) = self.history.take() else { return Err(super::internal("there is no history")) };
-        self.card.submit(self.solving());
+        self.gradients.submit(&self.card, self.steps);
         history.push(&self.card);
         let read: Vec<Vec<f32>> = self.card.read(&[history.shares(), (&self.gradients.progress, 8)])?;
         history.take(&read[0]);

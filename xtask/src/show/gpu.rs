@@ -42,7 +42,7 @@ fn crates(features: &str) -> Result<Vec<String>> {
     let mut tree = shell::cargo();
     tree.args(["tree", "--locked", "--package", "shapeop", "--edges", "normal", "--prefix", "none"]);
     let text = shell::output(tree.args(["--features", features]))?;
-    let lines = text.lines().filter_map(|line| Some(line.split_once(" (").map_or(line, |(name, _)| name).to_owned()));
+    let lines = text.lines().map(|line| line.split_once(" (").map_or(line, |(name, _)| name).to_owned());
     let mut crates: Vec<String> = lines.collect();
     crates.sort();
     crates.dedup();
