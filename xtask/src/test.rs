@@ -25,10 +25,8 @@ pub fn run() -> Result<()> {
         let line = format!("cargo test {}", arguments.join(" "));
         timed(&line, || shell::run(shell::cargo().arg("test").args(arguments).env("SHAPEOP_LEFT_OUT", &left_out)))
     };
-    cargo_test(&["--workspace"])?;
-    // One more build of the library serves all that need a feature.
-    let features = ["--workspace", "--features", "shapeop/schema,shapeop/gpu"];
-    cargo_test(&[&features[..], &["--test", "schema", "--test", "gpu", "--test", "capi_backend"]].concat())?;
+    // With all features, so that one build serves all tests. The bindings' tests below are those of a library without.
+    cargo_test(&["--workspace", "--features", "shapeop/schema,shapeop/gpu"])?;
 
     timed("licences of the crates inside the library", || licences::run(true))?;
     let places = timed("set-up of the bindings' tests", || bindings::set_up(PROFILE))?;
