@@ -159,9 +159,10 @@ impl Solver {
     }
 
     /// Why an exploration runs where it runs.
-    pub(super) fn reason_of_exploration(&self) -> String {
-        match self.backend {
-            Backend::Automatic => "the processor accelerates sweeps, and a card does not".to_owned(),
+    pub(super) fn reason_of_exploration(&self, refusal: Option<&str>) -> String {
+        match (self.backend, refusal) {
+            (Backend::Gpu, Some(refusal)) => refusal.to_owned(),
+            (Backend::Automatic, _) => "the processor accelerates sweeps, and a card does not".to_owned(),
             _ => "as asked for".to_owned(),
         }
     }

@@ -78,7 +78,8 @@ impl Solver {
             report.factorisation_seconds = system.factorisation_seconds;
             report.linear_solver = system.linear.used();
             report.linear_solver_reason = system.linear.reason();
-            report.linear_iterations = u32::try_from(system.linear.iteration_count()).unwrap_or(u32::MAX);
+            let of_processor = u32::try_from(system.linear.iteration_count()).unwrap_or(u32::MAX);
+            report.linear_iterations = report.linear_iterations.saturating_add(of_processor);
         }
         (report.ordering_count, report.factorisation_count) = (self.counts.orderings, self.counts.factorisations);
         Ok(report)

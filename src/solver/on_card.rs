@@ -280,6 +280,7 @@ impl Solver {
             Err(error) => return self.card_ended(Err(error), report),
         };
         let (gpu_seconds, transfer_seconds) = (engine.gpu_seconds, engine.transfer_seconds);
+        let linear_iterations = engine.linear_iterations;
         let mut rounds = Rounds::default();
         let mut outcome = Ok(None);
         let mut is_first = true;
@@ -321,11 +322,16 @@ impl Solver {
                 outcome = Ok(Some(Outcome::TimeBudget));
                 break;
             }
-            // The finish is the processor's.
-            if found.is_turn && (report.largest_move < near || found.is_stuck || rounds.are_idle(report)) {
+            // The finish is the processor's, if there is anything to finish to.
+            if course.options.tolerance > 0.0
+                && found.is_turn
+                && (report.largest_move < near || found.is_stuck || rounds.are_idle(report))
+            {
                 break;
             }
         }
+        let linear_iterations = engine.linear_iterations - linear_iterations;
+        report.linear_iterations = u32::try_from(linear_iterations).unwrap_or(u32::MAX);
         report.gpu_seconds += engine.gpu_seconds - gpu_seconds;
         report.transfer_seconds += engine.transfer_seconds - transfer_seconds;
         report.rejections += chooser.map(|chooser| chooser.rejections).unwrap_or_default();

@@ -125,7 +125,7 @@ pub struct Report {
     pub linear_solver: LinearSolver,
     /// Why that way, in words.
     pub linear_solver_reason: String,
-    /// Iterations of conjugate gradients in all linear solves of this call; 0 with a factor.
+    /// Iterations of conjugate gradients in all linear solves of this call, those on the card included; 0 with a factor alone.
     pub linear_iterations: u32,
     /// `Gpu` if the card made any of the iterations, else `Cpu`.
     pub backend: Backend,

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use shapeop::problem::{Acceleration, Force, Objective};
+use shapeop::problem::{Acceleration, Force, Objective, Reference};
 use shapeop::solver::{Backend, BackendOptions, LinearSolver, Outcome, Report, SolveOptions, Solver};
 
 use crate::has_adapter;
@@ -66,8 +66,7 @@ fn the_processor_finishes_to_the_tolerance() {
             println!("{name}: {} iterations, {} of the card", report.iterations, report.gpu_iterations);
             ends.push((solver.points().to_vec(), report.energy_after));
         }
-        let size = 1.0;
-        let apart = ends[0].0.iter().zip(&ends[1].0).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max) / size;
+        let apart = ends[0].0.iter().zip(&ends[1].0).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         println!("{name}: {apart:.1e} apart, energies {:.9e} and {:.9e}", ends[0].1, ends[1].1);
     }
 }
@@ -138,16 +137,11 @@ fn types_without_kernels_and_forces_on_faces_are_the_processors_share() {
     for backend in [Backend::Cpu, Backend::Gpu] {
         let model = model("planar_quads", 400).unwrap();
         let mut solver = model.solver().unwrap();
-        let points = solver.points().to_vec();
-        let surface = shapeop::problem::Reference::Polyline {
-            points: vec![[0.0; 3], [1.0, 1.0, 1.0], [2.0, 1.0, 0.0]],
-            closed: false,
-        };
-        solver.add_reference(&surface).unwrap();
+        let curve = Reference::Polyline { points: vec![[0.0; 3], [1.0, 1.0, 1.0], [2.0, 1.0, 0.0]], closed: false };
+        solver.add_reference(&curve).unwrap();
         for point in [17, 133, 250] {
             solver.add_constraint("OnCurve", &[point], 1.0).unwrap();
         }
-        let _ = points;
         solver
             .add_force(Force::Pressure { faces: [[0, 1, 21, 20], [21, 22, 42, 41]].iter().collect(), pressure: 0.5 })
             .unwrap();
@@ -308,7 +302,22 @@ fn hard_constraints_are_met_with_sweeps_on_the_card() {
 }
 
 #[test]
-fn acceleration_is_the_processors() {
+fn hard_constraints_without_a_kernel_are_swept_by_the_processor() {
+    if !has_adapter() {
+        return;
+    }
+    let mut solver = dragged(Backend::Gpu, 0.01);
+    let line = Reference::Polyline { points: vec![[0.0, 0.0, 0.0], [0.0, 1.0, 0.5]], closed: false };
+    solver.add_reference(&line).unwrap();
+    let id = solver.add_constraint("OnCurve", &[15], 1.0).unwrap();
+    solver.set_hard(&[id], true).unwrap();
+    let report = solved(&mut solver, &options(500, 1e-9));
+    assert_eq!((report.outcome, report.gpu_iterations), (Outcome::Converged, 0));
+    assert!(report.backend_reason.contains("OnCurve"), "{}", report.backend_reason);
+}
+
+#[test]
+fn both_machines_accelerate() {
     if !has_adapter() {
         return;
     }

@@ -229,6 +229,7 @@ impl Engine {
                             report.outcome = Outcome::Cancelled;
                             break;
                         }
+                        Ahead::Refused(error) => return Err(error),
                         Ahead::Failed(count, why) => {
                             found.sweeps += count;
                             report.gpu_iterations += count;

@@ -236,7 +236,8 @@ impl Solver {
         explorer.has_new_targets = false;
         let result = result.and_then(|(mut report, found)| {
             report.backend = if report.gpu_iterations > 0 { Backend::Gpu } else { Backend::Cpu };
-            report.backend_reason = self.reason_of_exploration();
+            let refusal = explorer.engine.as_ref().and_then(|engine| engine.card.refusal());
+            report.backend_reason = self.reason_of_exploration(refusal);
             let are_finite = self.points.iter().all(|point| point.is_finite());
             if are_finite && report.is_finite() && found.is_finite() {
                 explorer.found = Some(found);

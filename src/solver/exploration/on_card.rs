@@ -2,6 +2,7 @@
 //! far they came. Once they gain little the processor accelerates, and goes on to the finish.
 
 use super::engine::Engine;
+use crate::error::Error;
 use crate::solver::{ProgressFn, Report, Solver};
 
 #[cfg(feature = "gpu")]
@@ -20,9 +21,12 @@ pub(super) enum Ahead {
     /// The caller's progress function said to stop after so many.
     #[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "only a card sweeps ahead"))]
     Cancelled(u32),
-    /// The card failed after so many, or cannot have the model; why.
+    /// The card failed after so many.
     #[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "only a card sweeps ahead"))]
-    Failed(u32, String),
+    Failed(u32, Error),
+    /// The card cannot have the model.
+    #[cfg_attr(not(feature = "gpu"), allow(dead_code, reason = "only a card sweeps ahead"))]
+    Refused(Error),
 }
 
 #[cfg(not(feature = "gpu"))]
@@ -33,6 +37,12 @@ mod without_card {
     #[derive(Default)]
     pub(in super::super) struct CardState {
         _nothing: (),
+    }
+
+    impl CardState {
+        pub(in super::super) fn refusal(&self) -> Option<&str> {
+            None
+        }
     }
 
     impl Engine {
@@ -59,13 +69,23 @@ mod with_card {
     use super::super::splitting::{RELAXATION, Splitting};
     use super::{AHEAD, Ahead, Engine, ProgressFn, Report, Solver};
     use crate::constraints::{ConstraintSet, Kernel};
-    use crate::error::{Error, Result, Status};
+    use crate::error::{Result, Status};
     use crate::solver::gpu::{Card, Engine as CardEngine, HardParts, Now, Parts, constant_matrix};
     use crate::solver::{Backend, BackendOptions, Progress};
 
     /// What an exploration has on the card.
     #[derive(Default)]
-    pub(in super::super) struct CardState(Option<OnCard>);
+    pub(in super::super) struct CardState {
+        on_card: Option<OnCard>,
+        /// Why the processor sweeps although the card was asked for.
+        refusal: Option<String>,
+    }
+
+    impl CardState {
+        pub(in super::super) fn refusal(&self) -> Option<&str> {
+            self.refusal.as_deref()
+        }
+    }
 
     struct OnCard {
         engine: Box<CardEngine>,
@@ -86,14 +106,16 @@ mod with_card {
         set.batches().map(|(batch, _)| batch.len()).map(of_batch).collect()
     }
 
+    /// Why a card cannot sweep, if there is a hard constraint that it does not project.
+    fn without_kernel(constraints: &ConstraintSet) -> Option<String> {
+        let hard = constraints.part(true);
+        let batch = hard.batches().find(|(batch, _)| batch.len() > 0 && batch.kernel() == Kernel::None)?.0;
+        Some(format!("cards do not project \"{}\", which is hard here", batch.info().name))
+    }
+
     impl OnCard {
         fn new(options: &BackendOptions, constraints: &ConstraintSet, splitting: &Splitting) -> Result<Self> {
             let (soft, hard) = (constraints.part(false), constraints.part(true));
-            let without = hard.batches().find(|(batch, _)| batch.len() > 0 && batch.kernel() == Kernel::None);
-            if let Some((batch, _)) = without {
-                let reason = format!("cards do not project \"{}\", which is hard here", batch.info().name);
-                return Err(Error::new(Status::BackendUnavailable, reason));
-            }
             let soft_stiffness = by_batch(&soft, &splitting.soft, 1.0);
             let hard_stiffness = by_batch(&hard, &splitting.hard, splitting.penalty);
             let scales: Vec<f64> = splitting.hard.items.iter().map(|item| item.scale).collect();
@@ -136,7 +158,11 @@ mod with_card {
         ) -> Ahead {
             let wanted = AHEAD.min(most);
             // Anderson acceleration saves the processor more sweeps than a card could be faster at: it is not tried unasked.
-            if solver.backend() != Backend::Gpu || wanted == 0 {
+            if solver.backend() != Backend::Gpu || wanted == 0 || self.card.refusal.is_some() {
+                return Ahead::Swept(0);
+            }
+            self.card.refusal = without_kernel(&solver.constraints);
+            if self.card.refusal.is_some() {
                 return Ahead::Swept(0);
             }
             let mut made = 0;
@@ -144,8 +170,12 @@ mod with_card {
                 Ok(true) => Ahead::Swept(made),
                 Ok(false) => Ahead::Cancelled(made),
                 Err(error) => {
-                    self.card.0 = None;
-                    Ahead::Failed(made, error.to_string())
+                    self.card.on_card = None;
+                    if error.status() == Status::BackendFailed {
+                        Ahead::Failed(made, error)
+                    } else {
+                        Ahead::Refused(error)
+                    }
                 }
             }
         }
@@ -160,7 +190,7 @@ mod with_card {
             progress: &mut ProgressFn<'_>,
         ) -> Result<bool> {
             let penalty = self.splitting.penalty;
-            let mut on_card = match self.card.0.take().filter(|on_card| on_card.penalty == penalty) {
+            let mut on_card = match self.card.on_card.take().filter(|on_card| on_card.penalty == penalty) {
                 Some(on_card) => on_card,
                 None => OnCard::new(&solver.backend_options, &solver.constraints, &self.splitting)?,
             };
@@ -198,7 +228,7 @@ mod with_card {
             self.splitting.points.copy_from_slice(&engine.current);
             self.splitting.rows.copy_from_slice(&rows);
             self.splitting.forget();
-            self.card.0 = Some(on_card);
+            self.card.on_card = Some(on_card);
             Ok(goes_on)
         }
     }

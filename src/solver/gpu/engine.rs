@@ -109,6 +109,8 @@ pub(in crate::solver) struct Engine {
     scale: wgpu::Buffer,
     /// Names of types that the processor projects.
     pub(in crate::solver) host_types: Vec<&'static str>,
+    /// Steps of conjugate gradients so far.
+    pub(in crate::solver) linear_iterations: u64,
     pub(in crate::solver) gpu_seconds: f64,
     pub(in crate::solver) transfer_seconds: f64,
 }
@@ -230,6 +232,7 @@ impl Engine {
             sums,
             scale,
             host_types,
+            linear_iterations: 0,
             gpu_seconds: 0.0,
             transfer_seconds: 0.0,
             card,
@@ -356,9 +359,15 @@ impl Engine {
         Ok(ReadBack { iterations, evaluations, energy, largest_move, is_turn: is_turn || iterations < count, is_stuck })
     }
 
+    /// Solves for the change of the points.
+    fn solve(&mut self) {
+        self.gradients.submit(&self.card, self.steps);
+        self.linear_iterations += u64::from(self.steps);
+    }
+
     fn plain_iterations(&mut self, count: u32) {
         for _ in 0..count {
-            self.gradients.submit(&self.card, self.steps);
+            self.solve();
             self.card.submit(&self.moving);
             if !self.has_host() {
                 self.card.submit(&self.projecting);
@@ -391,7 +400,7 @@ impl Engine {
     /// One iteration from points of `energy`; returns the number of evaluations, too.
     fn accelerated_iteration(&mut self, energy: f64, chooser: &mut Chooser) -> Result<(Trial, u32)> {
         let Some(mut history) = self.history.take() else { return Err(super::internal("there is no history")) };
-        self.gradients.submit(&self.card, self.steps);
+        self.solve();
         history.push(&self.card);
         let read: Vec<Vec<f32>> = self.card.read(&[history.shares(), (&self.gradients.progress, 8)])?;
         history.take(&read[0]);

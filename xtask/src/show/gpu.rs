@@ -25,7 +25,7 @@ pub fn show(figures: &mut Figures) -> Result<()> {
         figures.says(&format!("{name}: {text}"));
     }
     if adapter["missing"].is_string() {
-        figures.not_measured("no adapter: accuracy and speed", "an adapter");
+        figures.says("not measured: accuracy and speed, as there is no adapter");
         return Ok(());
     }
     program.show(figures, &["accuracy"])?;
@@ -33,7 +33,7 @@ pub fn show(figures: &mut Figures) -> Result<()> {
         return program.show(figures, &["speed"]);
     }
     figures.group("speed");
-    figures.not_measured("no card: software adapter only", "a card");
+    figures.says("not measured: there is no card, only the software adapter; run this where there is one");
     Ok(())
 }
 
