@@ -3,11 +3,11 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use super::gpu::{Card, Engine, Now, Parts, ReadBack, constant_matrix};
 use glam::DVec3;
 
 use super::acceleration::Chooser;
 use super::backend::Course;
+use super::gpu::{Card, Engine, Now, Parts, ReadBack, constant_matrix};
 use super::{AdapterKind, Backend, Outcome, Progress, Report, Solver};
 use crate::error::{Error, Result, Status};
 use crate::problem::{Acceleration, Mode};
@@ -391,5 +391,28 @@ impl Rounds {
         self.least_energy = self.least_energy.min(report.energy_after);
         self.least_move = self.least_move.min(report.largest_move);
         self.idle >= IDLE_READ_BACKS
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn automatic_measures_both_and_takes_the_faster() {
+        let measured = |seconds: f64, iterations: u32| Measured { seconds, iterations };
+        let next = |cpu, gpu, backend| OnCard { cpu, gpu, ..OnCard::default() }.is_next(backend);
+        let nothing = Measured::default();
+        // The processor first, then the card, each for two iterations at least.
+        assert!(!next(nothing, nothing, Backend::Automatic));
+        assert!(!next(measured(1.0, 1), nothing, Backend::Automatic));
+        assert!(next(measured(2.0, 2), measured(9.0, 1), Backend::Automatic));
+        assert!(next(measured(2.0, 2), measured(1.9, 2), Backend::Automatic));
+        assert!(!next(measured(2.0, 2), measured(5.5, 5), Backend::Automatic));
+        // What was asked for is not measured, and what is refused is not tried.
+        assert!(next(nothing, measured(9.0, 3), Backend::Gpu) && !next(measured(9.0, 3), nothing, Backend::Cpu));
+        let refused = OnCard { refusal: Some("no card".to_owned()), ..OnCard::default() };
+        assert!(!refused.is_next(Backend::Automatic));
+        assert_eq!(refused.reason(Backend::Automatic), "no card");
     }
 }

@@ -8,7 +8,6 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use bytemuck::Pod;
-use wgpu::util::DeviceExt;
 
 use crate::error::{Error, Result, Status};
 use crate::solver::backend::{AdapterKind, BackendInfo, BackendOptions};
@@ -219,7 +218,12 @@ impl Card {
         let mut bytes = bytemuck::bytes_of(value).to_vec();
         bytes.resize(bytes.len().next_multiple_of(16), 0);
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents: &bytes, usage })
+        let size = bytes.len() as u64;
+        // Not mapped at its creation, which a lost card answers with a panic.
+        let buffer =
+            self.device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
+        self.write(&buffer, &bytes);
+        buffer
     }
 
     /// Writes `values` to the start of `buffer`, before whatever is submitted next.

@@ -1,9 +1,0 @@
-// y = keep x + factor A x
-
-@group(0) @binding(5) var<storage, read_write> y: array<vec4f>;
-
-fn finish(slice: u32, local: u32, row: u32, is_row: bool, image: vec3f) {
-    if is_row {
-        y[row] = vec4f(page.keep * x[row].xyz + page.factor * image, 0.0);
-    }
-}
