@@ -231,6 +231,10 @@ impl Solver {
         Ok(())
     }
 
+    pub(super) fn has_read_back(&self) -> bool {
+        false
+    }
+
     pub(super) fn turns_to_card(&self, _report: &Report) -> bool {
         false
     }

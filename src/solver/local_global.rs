@@ -21,7 +21,9 @@ impl Solver {
     ///
     /// # Errors
     /// The solver was not initialised (`NotInitialised`); a force acts along a free motion (`Unbounded`); coordinates or
-    /// weights are so large that the result is not finite (`InvalidValue`). The points are then as before.
+    /// weights are so large that the result is not finite (`InvalidValue`); with the backend `Gpu` also what
+    /// [`Solver::set_backend`] refuses, or that the card failed (`BackendFailed`). The points are then as before, but for a
+    /// card that failed in the middle: those read back last, after the iteration that the error names.
     pub fn solve(&mut self, iterations: u32) -> Result<()> {
         if self.explores() {
             let options = SolveOptions { max_iterations: iterations, tolerance: 0.0, time_budget_seconds: 0.0 };
@@ -42,8 +44,8 @@ impl Solver {
     /// iteration, on the caller's thread, and can stop the solve: what was reached is kept.
     ///
     /// # Errors
-    /// As [`Solver::solve`], except that a force along a free motion is an outcome of the report; an option is not
-    /// finite or below 0.
+    /// As [`Solver::solve`], except that a force along a free motion is an outcome of the report, and so is a card that
+    /// fails once points were read back; an option is not finite or below 0.
     pub fn solve_until(&mut self, options: &SolveOptions, progress: &mut ProgressFn<'_>) -> Result<Report> {
         for (name, value) in [("tolerance", options.tolerance), ("time_budget_seconds", options.time_budget_seconds)] {
             if !(value >= 0.0 && value.is_finite()) {
@@ -55,7 +57,13 @@ impl Solver {
             return self.explore(options, true, progress);
         }
         let mut found = None;
-        let result = self.run(|solver| Ok(found.insert(solver.iterate(options, progress)).is_finite()));
+        let result = self.run(|solver| {
+            let report = found.insert(solver.iterate(options, progress));
+            if report.outcome == Outcome::BackendFailed && !solver.has_read_back() {
+                return Err(Error::new(Status::BackendFailed, report.message.clone()));
+            }
+            Ok(report.is_finite())
+        });
         let mut report = match result {
             Ok(()) => found.unwrap_or_else(Report::empty),
             Err(error) if error.status() == Status::Unbounded => {
@@ -94,14 +102,14 @@ impl Solver {
         self.workspace.swap_external();
         let result = self.begin().and_then(|()| {
             let made = iterations(self);
-            match &made {
-                Err(error) if error.status() != Status::BackendFailed => return made.map(drop),
-                _ => {}
+            if made.is_err() && !self.has_read_back() {
+                return made.map(drop);
             }
             let is_finite = !matches!(made, Ok(false)) && self.points.iter().all(|point| point.is_finite());
             if is_finite && self.end_step() { made.map(drop) } else { Err(overflow()) }
         });
-        let has_kept_points = result.as_ref().is_err_and(|error| error.status() == Status::BackendFailed);
+        let is_of_card = result.as_ref().is_err_and(|error| error.status() == Status::BackendFailed);
+        let has_kept_points = is_of_card && self.has_read_back();
         if result.is_err() && !has_kept_points {
             self.points.copy_from_slice(&self.workspace.start);
             self.workspace.swap_external();

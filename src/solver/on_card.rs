@@ -38,6 +38,8 @@ pub(super) struct OnCard {
     gpu: Measured,
     /// Why the card is out of the question, and the processor does all.
     refusal: Option<String>,
+    /// True once the call at hand has read points back.
+    has_read_back: bool,
 }
 
 /// Iterations and the seconds that they took.
@@ -101,6 +103,7 @@ impl Solver {
     /// # Errors
     /// For `Gpu` alone: status `BackendUnavailable` or `BackendFailed`.
     pub(super) fn prepare_card(&mut self) -> Result<()> {
+        self.on_card.has_read_back = false;
         if self.backend == Backend::Cpu || self.on_card.engine.is_some() || self.on_card.refusal.is_some() {
             return Ok(());
         }
@@ -116,6 +119,11 @@ impl Solver {
             Err(error) => return Err(error),
         }
         Ok(())
+    }
+
+    /// True if the call at hand has read points back.
+    pub(super) fn has_read_back(&self) -> bool {
+        self.on_card.has_read_back
     }
 
     /// Why `Automatic` need not even try.
@@ -197,6 +205,7 @@ impl Solver {
         let is_known = engine.is_warm();
         let found = engine.iterate(most, now, chooser, near)?;
         self.points.copy_from_slice(&engine.current);
+        self.on_card.has_read_back = true;
         if is_known {
             self.on_card.gpu.iterations += found.iterations;
             self.on_card.gpu.seconds += engine.gpu_seconds + engine.transfer_seconds - seconds;
@@ -260,7 +269,10 @@ impl Solver {
 
     /// What `Automatic` goes on from, and what ends a solve that was to run on the card.
     fn card_failed(&mut self, error: Error, iteration: u32) -> Result<()> {
-        let after = format!("{error}; the points are those after iteration {iteration}");
+        let after = match iteration {
+            0 => error.to_string(),
+            _ => format!("{error}; the points are those after iteration {iteration}"),
+        };
         if self.backend == Backend::Automatic {
             self.on_card.refusal = Some(after);
             return Ok(());

@@ -448,7 +448,10 @@ fn play(calls: &[Call], counts: &mut Counts) -> Result<(), TestCaseError> {
         if is_refused {
             counts.refused += 1;
             prop_assert!(!message.is_empty(), "{call:?} was refused without a message");
-            prop_assert_eq!(before, picture(op), "{:?} was refused and changed something", call);
+            // A card that fails in the middle leaves what it had reached, and says so.
+            if !message.contains("the points are those after") {
+                prop_assert_eq!(before, picture(op), "{:?} was refused and changed something", call);
+            }
         }
         if let Some(points) = points_of(op) {
             prop_assert!(points.iter().all(|c| c.is_finite()), "{call:?} left {points:?}");
