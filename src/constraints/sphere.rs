@@ -53,7 +53,13 @@ impl Constraint for Sphere {
     // The points of an arc, say, have another mean than before they were moved radially.
     const TARGETS_ARE_CENTRED: bool = false;
 
-    const KERNEL: Kernel = Kernel::Wgsl(include_str!("../solver/gpu/shaders/sphere.wgsl"), RowUnit::Length);
+    const KERNEL: Kernel = Kernel::Wgsl(
+        concat!(
+            include_str!("../solver/gpu/shaders/radial_fit.wgsl"),
+            include_str!("../solver/gpu/shaders/sphere.wgsl")
+        ),
+        RowUnit::Length,
+    );
 
     fn at_rest(_x: Stencil<'_>, _scalars: &mut Vec<f64>) -> Self {
         Self

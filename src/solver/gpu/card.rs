@@ -15,6 +15,15 @@ use crate::solver::backend::{AdapterKind, BackendInfo, BackendOptions};
 /// Threads of a workgroup: a multiple of what cards run in step, and within every limit.
 pub(in crate::solver) const GROUP: u32 = 64;
 
+/// The end of texts that work on many things, one thread for each.
+pub(in crate::solver) const THREADS: &str = include_str!("shaders/threads.wgsl");
+
+/// Sums over workgroups.
+pub(in crate::solver) const GROUP_SUM: &str = include_str!("shaders/group_sum.wgsl");
+
+/// The largest moves of workgroups' points, as binding 4.
+pub(in crate::solver) const MOVES: &str = include_str!("shaders/moves.wgsl");
+
 /// An open card. Cheap to share: one serves all solvers of a process.
 pub(in crate::solver) struct Card {
     device: wgpu::Device,

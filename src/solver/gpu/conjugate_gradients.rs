@@ -10,7 +10,7 @@
 
 use wgpu::Buffer;
 
-use super::card::{Access, Card, GROUP, Run};
+use super::card::{Access, Card, GROUP, Run, THREADS};
 use super::frame::Four;
 use super::internal;
 use super::multilevel::Multilevel;
@@ -85,7 +85,7 @@ impl ConjugateGradients {
 
         let (read, write) = (Access::Read, Access::Write);
         let text = include_str!("shaders/gradients_begin.wgsl");
-        let begin = card.kernel("gradients begin", &[text], &[read, write, write, write])?;
+        let begin = card.kernel("gradients begin", &[text, THREADS], &[read, write, write, write])?;
         let start = vec![card.run_of(&begin, &[&scales, &right, &solution, &progress], n)];
 
         let sums = Sums::new(card, matrix)?;
@@ -93,7 +93,8 @@ impl ConjugateGradients {
         step.extend(matrix.runs(card, &PRODUCTS, [0.0; 2], &z, &[&right, &image, &sums.pairs])?);
         step.extend(sums.runs(card, [&state, &progress])?);
         let text = include_str!("shaders/gradients_follow.wgsl");
-        let follow = card.kernel("gradients follow", &[text], &[read, read, read, read, write, write, write, write])?;
+        let follow =
+            card.kernel("gradients follow", &[text, THREADS], &[read, read, read, read, write, write, write, write])?;
         step.push(card.run_of(&follow, &[&state, &scales, &z, &image, &p, &q, &solution, &right], n));
         Ok(Self { right, solution, progress, start, step })
     }

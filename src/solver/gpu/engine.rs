@@ -11,7 +11,7 @@ use std::time::Instant;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::card::{Access, Card, GROUP, Run};
+use super::card::{Access, Card, GROUP, GROUP_SUM, MOVES, Run, THREADS};
 use super::conjugate_gradients::ConjugateGradients;
 use super::constants;
 use super::frame::{Four, Frame, four, vector};
@@ -170,8 +170,11 @@ impl Engine {
         let linear = Sliced::new(&card, "the constant terms", &parts.linear)?;
         projecting.extend(linear.residual(&card, &constants, &buffers.shift, &sums)?);
         let (uniform, read, write) = (Access::Uniform, Access::Read, Access::Write);
-        let kernel =
-            card.kernel("constants", &[include_str!("shaders/constants.wgsl")], &[uniform, read, read, write])?;
+        let kernel = card.kernel(
+            "constants",
+            &[include_str!("shaders/constants.wgsl"), THREADS],
+            &[uniform, read, read, write],
+        )?;
         projecting.push(card.run_of(&kernel, &[&counts(n, 0), &constants, &buffers.shift, &sums], n));
         let is_of_host = |(index, (batch, _)): &(usize, (&dyn crate::constraints::Batch, &[f64]))| {
             batch.kernel() == Kernel::None && stiffness[*index].iter().any(|s| *s > 0.0)
@@ -181,7 +184,7 @@ impl Engine {
         let needs_host = parts.has_moving_forces || !host_types.is_empty();
         let host_pulls = if needs_host { Some(room("what the processor pulls with", n)?) } else { None };
         if let Some(pulls) = &host_pulls {
-            let kernel = card.kernel("add", &[include_str!("shaders/add.wgsl")], &[uniform, read, write])?;
+            let kernel = card.kernel("add", &[include_str!("shaders/add.wgsl"), THREADS], &[uniform, read, write])?;
             projecting.push(card.run_of(&kernel, &[&counts(n, 0), pulls, &sums], n));
         }
         // The pages of results, and what else is theirs, live in the runs.
@@ -197,10 +200,14 @@ impl Engine {
         });
         projecting.extend(holding);
         let accesses = [uniform, read, read, write, write];
-        let kernel = card.kernel("right_hand_side", &[include_str!("shaders/right_hand_side.wgsl")], &accesses)?;
+        let kernel = card.kernel(
+            "right_hand_side",
+            &[GROUP_SUM, include_str!("shaders/right_hand_side.wgsl"), THREADS],
+            &accesses,
+        )?;
         let buffers_of_run = [&counts(unknowns, n), &sums, &scale, &gradients.right, &energies];
         projecting.push(card.run_of(&kernel, &buffers_of_run, unknowns));
-        let kernel = card.kernel("move", &[include_str!("shaders/move.wgsl")], &accesses)?;
+        let kernel = card.kernel("move", &[MOVES, include_str!("shaders/move.wgsl"), THREADS], &accesses)?;
         let buffers_of_run = [&counts(n, 0), &gradients.solution, &scale, &buffers.shift, &moves];
         let mut moving = vec![card.run_of(&kernel, &buffers_of_run, n)];
         moving.extend(advancing);

@@ -3,7 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::card::{Access, Card, GROUP, Run};
+use super::card::{Access, Card, GROUP, Run, THREADS};
 use super::frame::Four;
 use super::local_step::LocalStep;
 use crate::constraints::ConstraintSet;
@@ -26,7 +26,7 @@ pub(super) fn runs(
     sums: &wgpu::Buffer,
 ) -> Result<Vec<Run>> {
     let accesses = [Access::Uniform, Access::Read, Access::Read, Access::Read, Access::Write];
-    let kernel = card.kernel("gather", &[include_str!("shaders/gather.wgsl")], &accesses)?;
+    let kernel = card.kernel("gather", &[include_str!("shaders/gather.wgsl"), THREADS], &accesses)?;
     let mut runs = Vec::new();
     for (page, (results, _)) in step.pages.iter().enumerate() {
         let (starts, places) = lists_of(constraints, step, page, point_count);

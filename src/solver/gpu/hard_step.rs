@@ -7,10 +7,10 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::card::{Access, Card, Run};
+use super::card::{Access, Card, Run, THREADS};
 use super::frame::{Four, Frame, four, vector};
 use super::gather;
-use super::local_step::{Bucket, LocalStep, PointBuffers, Wants, buckets, pages, row_unit};
+use super::local_step::{Bucket, LocalStep, POINTS, PointBuffers, Wants, buckets, pages, row_unit};
 use crate::constraints::{Batch, ConstraintSet, Kernel};
 use crate::error::Result;
 
@@ -272,11 +272,13 @@ impl Making<'_, '_> {
 
         let (uniform_access, read, write) = (Access::Uniform, Access::Read, Access::Write);
         let accesses = [uniform_access, read, read, read, read, read, read, write, write];
-        let kernel = card.kernel("hold", &[HARD, ROWS, include_str!("shaders/hold.wgsl")], &accesses)?;
+        let kernel =
+            card.kernel("hold", &[HARD, POINTS, ROWS, include_str!("shaders/hold.wgsl"), THREADS], &accesses)?;
         let buffers = [&uniform, &points.base, &points.shift, &indices, &numbers, &stiffness, held, gap, pulls];
         holding.push(card.run_of(&kernel, &buffers, count));
 
-        let kernel = card.kernel("place", &[HARD, ROWS, include_str!("shaders/place.wgsl")], &accesses)?;
+        let kernel =
+            card.kernel("place", &[HARD, POINTS, ROWS, include_str!("shaders/place.wgsl"), THREADS], &accesses)?;
         let buffers = [&uniform, &points.base, &points.shift, &indices, &numbers, held, &own_first, gap, &own.shift];
         placing.push(card.run_of(&kernel, &buffers, count));
 
@@ -288,7 +290,7 @@ impl Making<'_, '_> {
         }
         let kernel = card.kernel(
             "advance",
-            &[HARD, include_str!("shaders/advance.wgsl")],
+            &[HARD, include_str!("shaders/advance.wgsl"), THREADS],
             &[uniform_access, read, read, read, write],
         )?;
         advancing.push(card.run_of(&kernel, &[&uniform, residual, gap, &group.reach, held], count));

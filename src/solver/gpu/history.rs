@@ -3,7 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::card::{Access, Card, Run};
+use super::card::{Access, Card, GROUP_SUM, MOVES, Run, THREADS};
 use super::gather::vector_bytes;
 use crate::error::Result;
 use crate::solver::history::{Combination, Products};
@@ -66,12 +66,19 @@ impl History {
     pub(super) fn new(card: &Card, capacity: usize, count: usize, iterate: Iterate<'_>) -> Result<Self> {
         let (uniform, read, write) = (Access::Uniform, Access::Read, Access::Write);
         let accesses = [uniform, read, read, read, read, write, write, write];
-        let push = card.kernel("push", &[include_str!("shaders/push.wgsl")], &accesses)?;
-        let product =
-            card.kernel("products", &[include_str!("shaders/products.wgsl")], &[uniform, read, read, write])?;
-        let direct = card.kernel("direction", &[include_str!("shaders/direction.wgsl")], &[uniform, read, write])?;
-        let trial =
-            card.kernel("trial", &[include_str!("shaders/trial.wgsl")], &[uniform, read, read, write, write])?;
+        let push = card.kernel("push", &[GROUP_SUM, include_str!("shaders/push.wgsl")], &accesses)?;
+        let product = card.kernel(
+            "products",
+            &[GROUP_SUM, include_str!("shaders/products.wgsl")],
+            &[uniform, read, read, write],
+        )?;
+        let direct =
+            card.kernel("direction", &[include_str!("shaders/direction.wgsl"), THREADS], &[uniform, read, write])?;
+        let trial = card.kernel(
+            "trial",
+            &[MOVES, include_str!("shaders/trial.wgsl"), THREADS],
+            &[uniform, read, read, write, write],
+        )?;
         let room = |name, vectors: usize| card.room(name, vector_bytes(vectors * count));
         let (last, direction) = (room("the last iterate", 4)?, room("the direction", 1)?);
         let shares = card.room("the shares of products", vector_bytes((capacity + 1) * SHARES))?;

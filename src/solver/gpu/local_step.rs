@@ -8,13 +8,16 @@ use std::collections::BTreeMap;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::card::{Access, Card, Run};
+use super::card::{Access, Card, Run, THREADS};
 use super::frame::{Four, Frame, vector};
 use crate::constraints::{Batch, ConstraintSet, Kernel, RowUnit, Rows};
 use crate::error::Result;
 
 /// The text that all projections begin with.
 const CONSTRAINT: &str = include_str!("shaders/constraint.wgsl");
+
+/// Where the points of constraints are.
+pub(super) const POINTS: &str = include_str!("shaders/points.wgsl");
 
 /// The decompositions that they share.
 const LINEAR_ALGEBRA: &str = include_str!("shaders/linear_algebra.wgsl");
@@ -178,7 +181,7 @@ impl Bucket {
         let (Kernel::Wgsl(text, _), name) = (batch.kernel(), batch.info().name) else {
             return Err(super::internal("a type without a kernel is in a bucket"));
         };
-        let kernel = card.kernel(name, &[CONSTRAINT, LINEAR_ALGEBRA, text], &ACCESSES)?;
+        let kernel = card.kernel(name, &[CONSTRAINT, POINTS, LINEAR_ALGEBRA, text, THREADS], &ACCESSES)?;
         let count = self.slots.len();
         let mut indices = vec![0_u32; count * self.points];
         let mut own = Vec::new();

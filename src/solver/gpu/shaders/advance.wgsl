@@ -13,13 +13,7 @@ fn residual(i: u32, r: u32) -> vec3f {
     return select(found, found - held[place].xyz - 2.0 * gap[place].xyz, batch.is_fixed != 0u);
 }
 
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let i = (group.y * groups.x + group.x) * 64u + local;
+fn work(i: u32, group: u32, lane: u32) {
     if i >= batch.count {
         return;
     }

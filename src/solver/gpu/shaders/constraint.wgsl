@@ -1,9 +1,5 @@
 // What every projection starts from. One thread projects one constraint; the type's file has `fn project(i: u32)`, which
 // calls `put` once for each row of constraint `i`.
-//
-// Coordinates are the model's, less the middle of its bounding box, over `size`. A point is the sum of two numbers of single
-// precision: where it was at the last upload, and how far it has gone since. Flat arrays are by structure: entry `n` of
-// constraint `i` is at `n * count + i`.
 
 struct Batch {
     // Constraints, points of each, rows of each; numbers of each that are coefficients of its rows, and come first.
@@ -18,43 +14,12 @@ struct Batch {
 }
 
 @group(0) @binding(0) var<uniform> batch: Batch;
-@group(0) @binding(1) var<storage, read> base: array<vec4f>;
-@group(0) @binding(2) var<storage, read> shift: array<vec4f>;
-@group(0) @binding(3) var<storage, read> indices: array<u32>;
-@group(0) @binding(4) var<storage, read> numbers: array<f32>;
 @group(0) @binding(5) var<storage, read> stiffness: array<f32>;
 @group(0) @binding(6) var<storage, read_write> results: array<vec4f>;
-
-// Point `j` of the constraint.
-fn place(i: u32, j: u32) -> vec3f {
-    let index = indices[j * batch.count + i];
-    return base[index].xyz + shift[index].xyz;
-}
-
-// Point `j` of the constraint, from its point 0: as accurate as the distance is small.
-fn at(i: u32, j: u32) -> vec3f {
-    let index = indices[j * batch.count + i];
-    let first = indices[i];
-    return (base[index].xyz - base[first].xyz) + (shift[index].xyz - shift[first].xyz);
-}
-
-// The mean of the constraint's points, from its point 0.
-fn mean(i: u32) -> vec3f {
-    var sum = vec3f(0.0);
-    for (var j = 1u; j < batch.points; j++) {
-        sum += at(i, j);
-    }
-    return sum / f32(batch.points);
-}
 
 // Number `n` of what the type's `kernel_numbers` gave.
 fn number(i: u32, n: u32) -> f32 {
     return numbers[(batch.coefficients + n) * batch.count + i];
-}
-
-// The coefficient of point `j` in row `r`, in the type's row unit.
-fn coefficient(i: u32, r: u32, j: u32) -> f32 {
-    return numbers[(r * batch.points + j) * batch.count + i];
 }
 
 // Row `r` of `A x`, for rows that take equal points to 0.
@@ -114,13 +79,7 @@ fn put_pair(i: u32, r: u32, residual: vec3f) {
     }
 }
 
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let i = (group.y * groups.x + group.x) * 64u + local;
+fn work(i: u32, group: u32, lane: u32) {
     if i < batch.count {
         project(i);
     }

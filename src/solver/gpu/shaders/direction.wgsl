@@ -14,13 +14,7 @@ struct Factors {
 @group(0) @binding(1) var<storage, read> vectors: array<vec4f>;
 @group(0) @binding(2) var<storage, read_write> direction: array<vec4f>;
 
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let i = (group.y * groups.x + group.x) * 64u + lane;
+fn work(i: u32, group: u32, lane: u32) {
     if i < factors.count {
         let fresh = factors.a * vectors[factors.first + i] + factors.b * vectors[factors.second + i];
         // What was there before may be anything where it is not kept.

@@ -13,19 +13,12 @@ struct Lists {
 @group(0) @binding(3) var<storage, read> results: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> sums: array<vec4f>;
 
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let slice = group.y * groups.x + group.x;
-    let i = slice * 64u + lane;
+fn work(i: u32, group: u32, lane: u32) {
     if i >= lists.count {
         return;
     }
     var sum = sums[lists.first + i];
-    for (var entry = starts[slice] + lane; entry < starts[slice + 1u]; entry += 64u) {
+    for (var entry = starts[group] + lane; entry < starts[group + 1u]; entry += 64u) {
         let place = entries[entry];
         if place == 0xffffffffu {
             break;

@@ -5,13 +5,7 @@
 @group(0) @binding(2) var<storage, read_write> x: array<vec4f>;
 @group(0) @binding(3) var<storage, read_write> progress: array<vec4f, 2>;
 
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let i = (group.y * groups.x + group.x) * 64u + local;
+fn work(i: u32, group: u32, lane: u32) {
     if i < arrayLength(&x) {
         let scale = scales[i];
         x[i] = vec4f(0.0);

@@ -21,13 +21,7 @@ fn plus(a: vec3f, factor: vec3f, b: vec3f) -> vec3f {
     return select(a + factor * b, a, factor == vec3f(0.0));
 }
 
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let i = (group.y * groups.x + group.x) * 64u + local;
+fn work(i: u32, group: u32, lane: u32) {
     if i >= arrayLength(&x) {
         return;
     }

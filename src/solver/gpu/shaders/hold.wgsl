@@ -6,13 +6,7 @@
 @group(0) @binding(7) var<storage, read_write> gap: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> pulls: array<vec4f>;
 
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let i = (group.y * groups.x + group.x) * 64u + local;
+fn work(i: u32, group: u32, lane: u32) {
     if i >= batch.count {
         return;
     }

@@ -33,6 +33,30 @@ fn jacobi_rotation(a: f32, b: f32, d: f32) -> vec3f {
     return vec3f(cosine, tangent * cosine, tangent);
 }
 
+// Turns two vectors in their plane by the cosine and sine of `turn`.
+fn turn_pair(turn: vec3f, p: ptr<function, vec3f>, q: ptr<function, vec3f>) {
+    let old = *p;
+    *p = turn.x * old - turn.y * *q;
+    *q = turn.y * old + turn.x * *q;
+}
+
+// Puts the longer of two columns first, and what goes with them likewise, by a quarter turn: a rotation stays one.
+fn longer_first(
+    p: ptr<function, vec3f>,
+    q: ptr<function, vec3f>,
+    vp: ptr<function, vec3f>,
+    vq: ptr<function, vec3f>,
+) {
+    if dot(*p, *p) < dot(*q, *q) {
+        let a = *p;
+        let va = *vp;
+        *p = *q;
+        *q = -a;
+        *vp = *vq;
+        *vq = -va;
+    }
+}
+
 // A unit vector orthogonal to the unit vector `direction`.
 fn any_orthogonal(direction: vec3f) -> vec3f {
     let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(direction.x) > 0.6);
@@ -78,23 +102,17 @@ fn symmetric_eigen(diagonal: vec3f, off: vec3f) -> Eigen {
         var turn = jacobi_rotation(d.x, o.z, d.y);
         d += turn.z * o.z * vec3f(-1.0, 1.0, 0.0);
         o = vec3f(turn.y * o.y + turn.x * o.x, turn.x * o.y - turn.y * o.x, 0.0);
-        var old = x;
-        x = turn.x * x - turn.y * y;
-        y = turn.y * old + turn.x * y;
+        turn_pair(turn, &x, &y);
 
         turn = jacobi_rotation(d.x, o.y, d.z);
         d += turn.z * o.y * vec3f(-1.0, 0.0, 1.0);
         o = vec3f(turn.y * o.z + turn.x * o.x, 0.0, turn.x * o.z - turn.y * o.x);
-        old = x;
-        x = turn.x * x - turn.y * z;
-        z = turn.y * old + turn.x * z;
+        turn_pair(turn, &x, &z);
 
         turn = jacobi_rotation(d.y, o.x, d.z);
         d += turn.z * o.x * vec3f(0.0, -1.0, 1.0);
         o = vec3f(0.0, turn.y * o.z + turn.x * o.y, turn.x * o.z - turn.y * o.y);
-        old = y;
-        y = turn.x * y - turn.y * z;
-        z = turn.y * old + turn.x * z;
+        turn_pair(turn, &y, &z);
     }
     // Only the last two are needed: the first is their cross product.
     if d.x > d.y {
@@ -144,54 +162,20 @@ fn orthogonalised(m: mat3x3f) -> Orthogonalised {
             break;
         }
         var turn = jacobi_rotation(squared.x, off.z, squared.y);
-        var old = a0;
-        a0 = turn.x * a0 - turn.y * a1;
-        a1 = turn.y * old + turn.x * a1;
-        old = v0;
-        v0 = turn.x * v0 - turn.y * v1;
-        v1 = turn.y * old + turn.x * v1;
+        turn_pair(turn, &a0, &a1);
+        turn_pair(turn, &v0, &v1);
 
         turn = jacobi_rotation(dot(a0, a0), dot(a0, a2), squared.z);
-        old = a0;
-        a0 = turn.x * a0 - turn.y * a2;
-        a2 = turn.y * old + turn.x * a2;
-        old = v0;
-        v0 = turn.x * v0 - turn.y * v2;
-        v2 = turn.y * old + turn.x * v2;
+        turn_pair(turn, &a0, &a2);
+        turn_pair(turn, &v0, &v2);
 
         turn = jacobi_rotation(dot(a1, a1), dot(a1, a2), dot(a2, a2));
-        old = a1;
-        a1 = turn.x * a1 - turn.y * a2;
-        a2 = turn.y * old + turn.x * a2;
-        old = v1;
-        v1 = turn.x * v1 - turn.y * v2;
-        v2 = turn.y * old + turn.x * v2;
+        turn_pair(turn, &a1, &a2);
+        turn_pair(turn, &v1, &v2);
     }
-    // Swaps with one sign turned: `V` stays a rotation.
-    if dot(a0, a0) < dot(a1, a1) {
-        let old = a0;
-        a0 = a1;
-        a1 = -old;
-        let own = v0;
-        v0 = v1;
-        v1 = -own;
-    }
-    if dot(a1, a1) < dot(a2, a2) {
-        let old = a1;
-        a1 = a2;
-        a2 = -old;
-        let own = v1;
-        v1 = v2;
-        v2 = -own;
-    }
-    if dot(a0, a0) < dot(a1, a1) {
-        let old = a0;
-        a0 = a1;
-        a1 = -old;
-        let own = v0;
-        v0 = v1;
-        v1 = -own;
-    }
+    longer_first(&a0, &a1, &v0, &v1);
+    longer_first(&a1, &a2, &v1, &v2);
+    longer_first(&a0, &a1, &v0, &v1);
     v0 = normalize(v0);
     v1 = unit_beside(v1, v0);
     return Orthogonalised(mat3x3f(a0, a1, a2), mat3x3f(v0, v1, cross(v0, v1)), scale);

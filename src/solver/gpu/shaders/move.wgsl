@@ -1,4 +1,4 @@
-// Moves the points by the solution; the largest squared move of each workgroup's points.
+// Moves the points by the solution.
 
 struct Count {
     count: u32,
@@ -8,32 +8,12 @@ struct Count {
 @group(0) @binding(1) var<storage, read> solution: array<vec4f>;
 @group(0) @binding(2) var<storage, read> scale: array<f32>;
 @group(0) @binding(3) var<storage, read_write> shift: array<vec4f>;
-@group(0) @binding(4) var<storage, read_write> moves: array<f32>;
 
-var<workgroup> largest: array<f32, 64>;
-
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = group.y * groups.x + group.x;
-    let i = index * 64u + lane;
-    var squared = 0.0;
+fn work(i: u32, group: u32, lane: u32) {
+    var change = vec3f(0.0);
     if i < points.count {
-        let change = scale[i] * solution[i].xyz;
+        change = scale[i] * solution[i].xyz;
         shift[i] = vec4f(shift[i].xyz + change, 0.0);
-        squared = dot(change, change);
     }
-    largest[lane] = squared;
-    for (var half = 32u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if lane < half {
-            largest[lane] = max(largest[lane], largest[lane + half]);
-        }
-    }
-    if lane == 0u && index < arrayLength(&moves) {
-        moves[index] = largest[0];
-    }
+    tell_move(change, group, lane);
 }

@@ -10,8 +10,6 @@ struct Products {
 @group(0) @binding(2) var<storage, read> pair: array<vec4f>;
 @group(0) @binding(3) var<storage, read_write> shares: array<vec4f>;
 
-var<workgroup> parts: array<vec4f, 64>;
-
 @compute @workgroup_size(64)
 fn main(
     @builtin(workgroup_id) group: vec3u,
@@ -27,14 +25,8 @@ fn main(
         let change = last[3u * n + i].xyz;
         sum += vec4f(dot(s, image), dot(d, image), dot(s, change), dot(d, change));
     }
-    parts[lane] = sum;
-    for (var half = 32u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if lane < half {
-            parts[lane] += parts[lane + half];
-        }
-    }
+    let total = group_sum(sum, lane);
     if lane == 0u {
-        shares[products.first_share + group.x] = parts[0];
+        shares[products.first_share + group.x] = total;
     }
 }

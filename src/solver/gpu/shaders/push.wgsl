@@ -18,8 +18,6 @@ struct Push {
 @group(0) @binding(6) var<storage, read_write> pair: array<vec4f>;
 @group(0) @binding(7) var<storage, read_write> shares: array<vec4f>;
 
-var<workgroup> parts: array<f32, 64>;
-
 @compute @workgroup_size(64)
 fn main(
     @builtin(workgroup_id) group: vec3u,
@@ -40,14 +38,8 @@ fn main(
         last[2u * n + i] = vec4f(image, 0.0);
         product += dot(f, image);
     }
-    parts[lane] = product;
-    for (var half = 32u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if lane < half {
-            parts[lane] += parts[lane + half];
-        }
-    }
+    let total = group_sum(vec4f(product, 0.0, 0.0, 0.0), lane);
     if lane == 0u {
-        shares[push.first_share + group.x] = vec4f(parts[0], 0.0, 0.0, 0.0);
+        shares[push.first_share + group.x] = total;
     }
 }

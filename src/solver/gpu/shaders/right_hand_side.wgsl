@@ -12,16 +12,7 @@ struct Count {
 @group(0) @binding(3) var<storage, read_write> right: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> energies: array<f32>;
 
-var<workgroup> shares: array<f32, 64>;
-
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let index = group.y * groups.x + group.x;
-    let i = index * 64u + lane;
+fn work(i: u32, group: u32, lane: u32) {
     var sum = vec4f(0.0);
     if i < count.points {
         sum = sums[i];
@@ -29,14 +20,8 @@ fn main(
     if i < count.unknowns {
         right[i] = vec4f(scale[i] * sum.xyz, 0.0);
     }
-    shares[lane] = sum.w;
-    for (var half = 32u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if lane < half {
-            shares[lane] += shares[lane + half];
-        }
-    }
-    if lane == 0u && index < arrayLength(&energies) {
-        energies[index] = shares[0];
+    let total = group_sum(sum, lane);
+    if lane == 0u && group < arrayLength(&energies) {
+        energies[group] = total.w;
     }
 }

@@ -4,7 +4,7 @@
 // on it: their places beside it have hardly a digit in single precision.
 const FLAT = 4e-12;
 
-struct Sphere {
+struct Fit {
     // About the mean, in units of `size`, along the axes of least, middle and greatest scatter.
     center: vec3f,
     // `tr S / k`.
@@ -12,13 +12,9 @@ struct Sphere {
     is_flat: bool,
 }
 
-fn own_place(i: u32, j: u32, found: Principal) -> vec3f {
-    return ((at(i, j) - found.mean) * found.axes) / found.size;
-}
-
 // The center solves `S c = ½ Σ ‖y‖² y`. Along the axes the entries off the diagonal of `S` are small beside the roots
 // of those on it, so that elimination, from the greatest axis on, loses no digits however flat the points are.
-fn sphere_of(i: u32, found: Principal) -> Sphere {
+fn fit_of(i: u32, found: Principal) -> Fit {
     var squares = vec3f(0.0);
     var off = vec3f(0.0);
     // Σ (‖y‖² − tr S / k) y: the second part adds nothing but takes off what cancels.
@@ -35,12 +31,12 @@ fn sphere_of(i: u32, found: Principal) -> Sphere {
     let middle = squares.y - middle_of_greatest * off.x;
     let beside = off.z - least_of_greatest * off.x;
     if !(middle > FLAT * squares.z) {
-        return Sphere(vec3f(0.0), spread, true);
+        return Fit(vec3f(0.0), spread, true);
     }
     let least_of_middle = beside / middle;
     let least = squares.x - least_of_greatest * off.y - least_of_middle * beside;
     if !(least > FLAT * squares.z) {
-        return Sphere(vec3f(0.0), spread, true);
+        return Fit(vec3f(0.0), spread, true);
     }
     let right = 0.5 * moment;
     let right_middle = right.y - middle_of_greatest * right.z;
@@ -48,40 +44,20 @@ fn sphere_of(i: u32, found: Principal) -> Sphere {
     let x = right_least / least;
     let y = (right_middle - beside * x) / middle;
     let z = (right.z - off.x * y - off.y * x) / squares.z;
-    return Sphere(vec3f(x, y, z), spread, false);
+    return Fit(vec3f(x, y, z), spread, false);
 }
 
-fn move_of(y: vec3f, sphere: Sphere) -> vec3f {
-    if sphere.is_flat {
+fn move_of(y: vec3f, fit: Fit) -> vec3f {
+    if fit.is_flat {
         return vec3f(-y.x, 0.0, 0.0);
     }
-    let from_center = y - sphere.center;
+    let from_center = y - fit.center;
     let distance = length(from_center);
-    let radius = sqrt(dot(sphere.center, sphere.center) + sphere.spread);
+    let radius = sqrt(dot(fit.center, fit.center) + fit.spread);
     if !(distance > 0.0) {
         // Every direction is as near from the center itself.
         return vec3f(0.0, 0.0, radius);
     }
-    let w = sphere.spread - dot(y, y) + 2.0 * dot(y, sphere.center);
+    let w = fit.spread - dot(y, y) + 2.0 * dot(y, fit.center);
     return from_center * (w / (distance * (distance + radius)));
-}
-
-fn project(i: u32) {
-    let found = principal(i);
-    if found.size == 0.0 {
-        for (var j = 0u; j < batch.points; j++) {
-            put_centred(i, j, vec3f(0.0), vec3f(0.0));
-        }
-        return;
-    }
-    let sphere = sphere_of(i, found);
-    var sum = vec3f(0.0);
-    for (var j = 0u; j < batch.points; j++) {
-        sum += move_of(own_place(i, j, found), sphere);
-    }
-    let scaled = found.axes * found.size;
-    let mean_move = scaled * (sum / f32(batch.points));
-    for (var j = 0u; j < batch.points; j++) {
-        put_centred(i, j, scaled * move_of(own_place(i, j, found), sphere), mean_move);
-    }
 }

@@ -41,32 +41,10 @@ fn strain_turn(p: ptr<function, vec3f>, q: ptr<function, vec3f>, vp: ptr<functio
     if abs(gamma) <= STRAIN_ORTHOGONAL * most || most < STRAIN_ZERO {
         return false;
     }
-    // The smaller root of t² + 2τt − 1 = 0 with τ = (β − α)/(2γ), without cancellation.
-    let difference = (beta - alpha) / most;
-    let twice = 2.0 * gamma / most;
-    let sum = abs(difference) + sqrt(difference * difference + twice * twice);
-    let t = select(-twice, twice, difference >= 0.0) / sum;
-    let c = inverseSqrt(1.0 + t * t);
-    let s = t * c;
-    let a = *p;
-    let va = *vp;
-    *p = c * a - s * *q;
-    *q = s * a + c * *q;
-    *vp = c * va - s * *vq;
-    *vq = s * va + c * *vq;
+    let turn = jacobi_rotation(alpha / most, gamma / most, beta / most);
+    turn_pair(turn, p, q);
+    turn_pair(turn, vp, vq);
     return true;
-}
-
-// Puts the longer of two columns first, by a quarter turn.
-fn strain_sort(p: ptr<function, vec3f>, q: ptr<function, vec3f>, vp: ptr<function, vec3f>, vq: ptr<function, vec3f>) {
-    if dot(*p, *p) < dot(*q, *q) {
-        let a = *p;
-        let va = *vp;
-        *p = *q;
-        *q = -a;
-        *vp = *vq;
-        *vq = -va;
-    }
 }
 
 // The part of the unit axis least along the unit vector `u` that is orthogonal to it, normalised.
@@ -123,9 +101,9 @@ fn singular_3(a: mat3x3f) -> Singular3 {
             break;
         }
     }
-    strain_sort(&p, &q, &vp, &vq);
-    strain_sort(&p, &r, &vp, &vr);
-    strain_sort(&q, &r, &vq, &vr);
+    longer_first(&p, &q, &vp, &vq);
+    longer_first(&p, &r, &vp, &vr);
+    longer_first(&q, &r, &vq, &vr);
     let v0 = normalize(vp);
     let v1 = normalize(vq - dot(vq, v0) * v0);
     found.v = mat3x3f(v0, v1, cross(v0, v1));
@@ -156,7 +134,7 @@ fn singular_2(a0: vec3f, a1: vec3f) -> Singular2 {
     if strain_turn(&p, &q, &vp, &vq) {
         strain_turn(&p, &q, &vp, &vq);
     }
-    strain_sort(&p, &q, &vp, &vq);
+    longer_first(&p, &q, &vp, &vq);
     found.v0 = normalize(vp.xy);
     found.v1 = vec2f(-found.v0.y, found.v0.x);
     let b0 = scaled * found.v0;
