@@ -155,7 +155,7 @@ mod tests {
     use crate::linalg::simd::Lanes;
     use crate::linalg::symmetric::SymmetricMatrix;
     use crate::solver::gpu::multilevel::tests::{grid, prepared};
-    use crate::solver::gpu::sliced::tests::{Random, card};
+    use crate::solver::gpu::tests::{Random, card};
     use glam::DVec3;
 
     type Three = [f64; 3];

@@ -189,15 +189,13 @@ impl Engine {
         }
         // The pages of results, and what else is theirs, live in the runs.
         projecting.extend(gather::runs(&card, constraints, &LocalStep { runs: Vec::new(), ..local }, n, &sums)?);
-        let hard = match &parts.hard {
-            Some(hard) => Some(HardStep::new(&card, hard, &frame, (&buffers, n), &sums)?),
-            None => None,
+        let (hard, [holding, advancing]) = match &parts.hard {
+            Some(hard) => {
+                let (hard, runs) = HardStep::new(&card, hard, &frame, (&buffers, n), &sums)?;
+                (Some(hard), runs)
+            }
+            None => (None, [Vec::new(), Vec::new()]),
         };
-        let (mut holding, mut advancing) = (Vec::new(), Vec::new());
-        let hard = hard.map(|mut hard| {
-            (holding, advancing) = (std::mem::take(&mut hard.holding), std::mem::take(&mut hard.advancing));
-            hard
-        });
         projecting.extend(holding);
         let accesses = [uniform, read, read, write, write];
         let kernel = card.kernel(

@@ -64,9 +64,6 @@ pub(super) struct HardStep {
     /// The model's points behind the own ones.
     own_indices: Vec<u32>,
     scales: Vec<f64>,
-    /// Before and after the global step.
-    pub(super) holding: Vec<Run>,
-    pub(super) advancing: Vec<Run>,
     row_count: usize,
 }
 
@@ -88,14 +85,14 @@ const HARD: &str = include_str!("shaders/hard.wgsl");
 const ROWS: &str = include_str!("shaders/rows.wgsl");
 
 impl HardStep {
-    /// `sums` are what pulls are added to.
+    /// The state, and the runs before and after the global step. `sums` are what pulls are added to.
     pub(super) fn new(
         card: &Card,
         parts: &HardParts<'_>,
         frame: &Frame,
         points: (&PointBuffers, usize),
         sums: &wgpu::Buffer,
-    ) -> Result<Self> {
+    ) -> Result<(Self, [Vec<Run>; 2])> {
         let (points, point_count) = points;
         let all = |_: Kernel| true;
         let ones: Vec<Vec<f64>> = parts.set.batches().map(|(batch, _)| vec![1.0; batch.len()]).collect();
@@ -148,7 +145,7 @@ impl HardStep {
         placing.extend(projecting);
         placing.extend(advancing);
         let scales = parts.scales.to_vec();
-        Ok(Self { groups, held, own, own_indices, scales, holding, advancing: placing, row_count })
+        Ok((Self { groups, held, own, own_indices, scales, row_count }, [holding, placing]))
     }
 
     /// Brings the own points to where the model's points were uploaded.

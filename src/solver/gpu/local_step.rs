@@ -279,7 +279,8 @@ pub(super) fn images(batch: &dyn Batch, slot: usize, points: &[DVec3]) -> Vec<DV
 mod tests {
     use super::*;
     use crate::constraints::types;
-    use crate::solver::{BackendOptions, Solver};
+    use crate::solver::Solver;
+    use crate::solver::gpu::tests::card;
 
     /// More than a workgroup of constraints of one type, off rest, with weights of their own; `None` if it takes a shape.
     fn model(type_name: &str, points_each: usize) -> Option<(Solver, Vec<f64>)> {
@@ -339,9 +340,7 @@ mod tests {
     /// Compares what kernels add to points with the residuals that they tell, whichever way they write them.
     #[test]
     fn pulls_and_energies_are_those_of_the_residuals() {
-        let Ok(card) = Card::shared(&BackendOptions::default()) else {
-            return eprintln!("LEFT OUT: there is no adapter");
-        };
+        let Some(card) = card(0) else { return };
         let mut compared = 0;
         for info in types() {
             for k in [info.least_indices, info.greatest_indices.unwrap_or(6)] {

@@ -11,6 +11,8 @@ mod history;
 mod local_step;
 mod multilevel;
 mod sliced;
+#[cfg(test)]
+pub(in crate::solver) mod tests;
 
 pub(in crate::solver) use card::Card;
 pub(in crate::solver) use constants::matrix as constant_matrix;

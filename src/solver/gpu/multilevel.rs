@@ -242,7 +242,7 @@ pub(super) mod tests {
     use super::*;
     use crate::linalg::simd::Lanes;
     use crate::linalg::symmetric::SymmetricMatrix;
-    use crate::solver::gpu::sliced::tests::{Random, card};
+    use crate::solver::gpu::tests::{Random, card};
 
     /// Springs between neighbours of a grid of these sizes, of a stiffness that varies by `spread`, each node of the first
     /// layer `held`.
