@@ -1,4 +1,4 @@
-//! Each kernel against its twin: thousands of constraints, random and degenerate, projected by both.
+//! What the tests of kernels share: random constraints, projected by both backends.
 
 use glam::DVec3;
 use shapeop::solver::{Backend, Solver};
@@ -107,34 +107,24 @@ pub fn compare(type_name: &str, samples: &[Sample], mut judge: impl FnMut(usize,
     }
 }
 
+/// What else than near the processor's answer the card's may be: where another is feasible and as near, to [`NEAR`] ...
+pub const AS_GOOD: &str = "as feasible and as near";
+
+/// ... and where the processor's own changes as much when points are moved by round-off.
+pub const ILL_CONDITIONED: &str = "that round-off moves as far";
+
+/// Says how the samples of one type came out where they are many: `cargo xtask show gpu` repeats it. `worst` is the largest
+/// difference in sizes of a constraint, of all but `others`, which are told by number and kind.
+pub fn account(type_name: &str, count: usize, worst: f64, others: &[(usize, &str)]) {
+    if COUNTS.ends_with(&[count]) {
+        let told = others.iter().filter(|(count, _)| *count > 0).map(|(count, kind)| format!(", {count} {kind}"));
+        println!("kernel {type_name}: {count} constraints, within {worst:.1e}{}", told.collect::<String>());
+    }
+}
+
 impl Compared<'_> {
     /// The largest distance between the targets of the two.
     pub fn difference(&self) -> f64 {
         self.cpu.iter().zip(&self.gpu).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
-    }
-}
-
-#[test]
-fn edges_are_cut_alike() {
-    let mut random = Random::new(1);
-    for count in COUNTS {
-        let samples: Vec<Sample> = (0..count)
-            .map(|i| {
-                let (size, place) = (random.size(), 1e3 * random.vector());
-                let rest = vec![place, place + size * random.vector()];
-                let points = match i % 10 {
-                    0 => vec![place; 2],
-                    1 => rest.clone(),
-                    _ => vec![place, place + size * random.vector()],
-                };
-                let low = random.within(0.0, 1.2);
-                let scalars = vec![diameter(&rest), low, low + random.within(0.0, 0.5)];
-                Sample { points, rest: Some(rest), scalars: Some(scalars) }
-            })
-            .collect();
-        compare("EdgeStrain", &samples, |id, found| {
-            let size = diameter(&found.sample.points).max(found.scalars[0]) / found.scalars[0];
-            assert!(found.difference() <= NEAR * size, "{id}: {:?} {:?}", found.cpu, found.gpu);
-        });
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A projection is right if it is the processor's within [`NEAR`] of the size of its rows. Where the nearest element is not
 //! unique it may be another that is as feasible and as near. What is left must be ill-conditioned: the processor's own answer
-//! changes by as much where the points move by [`STIR`]. The share of the last two is printed, and small on random samples.
+//! changes by as much where the points move by [`STIR`]. The shares are printed, and small on random samples.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,9 @@ use glam::{DMat3, DQuat, DVec3};
 use shapeop::solver::Backend;
 
 use crate::has_adapter;
-use crate::kernels::{COUNTS, Compared, NEAR, Random, Sample, compare, diameter, solver_of};
+use crate::kernels::{
+    AS_GOOD, COUNTS, Compared, ILL_CONDITIONED, NEAR, Random, Sample, account, compare, diameter, solver_of,
+};
 
 /// Of the constraint's diameter: some units in the last place of single precision, in which coordinates are subtracted.
 const STIR: f64 = 1e-6;
@@ -318,13 +320,8 @@ fn judge(type_name: &str, shapes: &[Shape], samples: &[Sample], law: &Law<'_>) {
     let others: Vec<usize> = as_good.iter().chain(&stayed).copied().chain(doubtful.iter().map(|one| one.id)).collect();
     let random_others = others.iter().filter(|id| is_random(id)).count();
     if samples.len() > 1000 {
-        eprintln!(
-            "{type_name}, {} samples: {} as good, {} stayed, {} ill-conditioned, {random_others} of {random_count} random ones; else within {farthest:.1e}",
-            samples.len(),
-            as_good.len(),
-            stayed.len(),
-            doubtful.len()
-        );
+        let others = [(as_good.len(), AS_GOOD), (stayed.len(), "left as they are"), (doubtful.len(), ILL_CONDITIONED)];
+        account(type_name, samples.len(), farthest, &others);
         assert!(random_others * 20 <= random_count, "{type_name}: too many need the second way");
     }
 }

@@ -1,13 +1,16 @@
 //! `cargo xtask test`.
 
 use std::fs;
+use std::num::NonZero;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
 
 use crate::languages::{self, TOLERANCE};
-use crate::suites::{LeftOut, Places};
+use crate::suites::{LeftOut, Places, Suite};
 use crate::{bindings, licences, setup, shell};
 
 /// The profile that `cargo test` builds with, so that the bindings' tests take the library as it is then.
@@ -31,7 +34,7 @@ pub fn run() -> Result<()> {
     timed("licences of the crates inside the library", || licences::run(true))?;
     let places = timed("set-up of the bindings' tests", || bindings::set_up(PROFILE))?;
     let mut lines: Vec<String> = fs::read_to_string(&left_out)?.lines().map(str::to_owned).collect();
-    lines.extend(run_suites(&places, &left_out)?);
+    lines.extend(timed("the tests of all bindings", || run_suites(&places, &left_out))?);
     lines.extend(run_languages(&places)?);
     lines.sort();
     lines.dedup();
@@ -47,25 +50,42 @@ pub fn run() -> Result<()> {
     Ok(())
 }
 
-/// The tests of every binding; returns what was left out.
+/// The tests of every binding, as many at once as there are processors: most keep one busy. Returns what was left out.
 fn run_suites(places: &Places, left_out: &Path) -> Result<Vec<String>> {
-    let mut lines = Vec::new();
     let mut places = places.clone();
     places.set("leftout", left_out);
-    for suite in &bindings::SUITES {
-        let outcome = timed(suite.name, || suite.run(&places))?;
-        match outcome {
-            Err(LeftOut(why)) => lines.push(format!("{}: {why}", suite.name)),
-            Ok(printed) => {
-                let last = printed.lines().rev().find(|line| line.contains(" passed") || line.starts_with("Ran "));
-                println!("  {}", last.or(printed.lines().last()).unwrap_or("done"));
-                // What pytest says behind the tests. Those of unittest leave out only what their Python cannot do.
-                let skipped = printed.lines().filter_map(|line| line.strip_prefix("SKIPPED "));
-                lines.extend(skipped.map(|what| format!("{}: {what}", suite.name)));
-            }
+    let next = AtomicUsize::new(0);
+    let run_some = || -> Result<Vec<String>> {
+        let mut lines = Vec::new();
+        while let Some(suite) = bindings::SUITES.get(next.fetch_add(1, Ordering::Relaxed)) {
+            lines.extend(run_suite(suite, &places)?);
+        }
+        Ok(lines)
+    };
+    thread::scope(|scope| {
+        let count = thread::available_parallelism().map_or(1, NonZero::get);
+        let workers: Vec<_> = (0..count).map(|_| scope.spawn(run_some)).collect();
+        let ends =
+            workers.into_iter().map(|worker| worker.join().unwrap_or_else(|_| bail!("a suite's thread panicked")));
+        ends.collect::<Result<Vec<_>>>().map(|lines| lines.concat())
+    })
+}
+
+fn run_suite(suite: &Suite, places: &Places) -> Result<Vec<String>> {
+    let started = Instant::now();
+    let outcome = suite.run(places)?;
+    let seconds = started.elapsed().as_secs_f64();
+    match outcome {
+        Err(LeftOut(why)) => Ok(vec![format!("{}: {why}", suite.name)]),
+        Ok(printed) => {
+            let last = printed.lines().rev().find(|line| line.contains(" passed") || line.starts_with("Ran "));
+            let last = last.or(printed.lines().last()).unwrap_or("done");
+            println!("-- {}: {seconds:.0} s\n  {last}", suite.name);
+            // What pytest says behind the tests. Those of unittest leave out only what their Python cannot do.
+            let skipped = printed.lines().filter_map(|line| line.strip_prefix("SKIPPED "));
+            Ok(skipped.map(|what| format!("{}: {what}", suite.name)).collect())
         }
     }
-    Ok(lines)
 }
 
 /// The three problems in every language; returns what was left out.

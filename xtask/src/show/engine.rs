@@ -34,7 +34,7 @@ pub fn show(figures: &mut Figures) -> Result<()> {
     figures.plain("planarity after, max", &percent(&report["quality"]["after"]["planarity"]["max"]));
 
     figures.group("parity with libShapeOp 0.1.0: worst error over its tolerance");
-    let text = test_output("parity", &[])?;
+    let text = shell::output(&mut super::test_command(&["--test", "parity"]))?;
     let mut count = 0;
     for words in text.lines().map(|line| line.split_whitespace().collect::<Vec<_>>()) {
         if let ["parity", name, fixtures, "fixtures,", "worst", _, "of", "the", "diagonal,", worst, ..] = words[..] {
@@ -92,7 +92,7 @@ pub fn show(figures: &mut Figures) -> Result<()> {
     }
 
     figures.group("random sequences of C calls with random arguments");
-    let text = test_output("fuzz", &[("SHAPEOP_FUZZ_SEQUENCES", SEQUENCES)])?;
+    let text = shell::output(super::test_command(&["--test", "fuzz"]).env("SHAPEOP_FUZZ_SEQUENCES", SEQUENCES))?;
     let count = text.lines().filter(|line| line.contains("sequences")).inspect(|line| println!("  {line}")).count();
     figures.exactly("no crash, no point that is not finite", count.min(1), 1);
     Ok(())
@@ -144,12 +144,4 @@ fn percent(value: &Value) -> String {
 
 fn float(value: &Value) -> Result<f64> {
     value.as_f64().with_context(|| format!("expected a number, found {value}"))
-}
-
-/// What a test of the library prints.
-fn test_output(name: &str, variables: &[(&str, &str)]) -> Result<String> {
-    let mut command = shell::cargo();
-    command.args(["test", "--quiet", "--release", "--package", "shapeop", "--test", name, "--", "--nocapture"]);
-    command.envs(variables.iter().copied());
-    shell::output(&mut command)
 }

@@ -10,6 +10,9 @@ use super::Figures;
 use super::program::Program;
 use crate::{dist, setup, shell};
 
+/// Types with a kernel.
+const KERNELS: usize = 23;
+
 /// How crates are called that only the feature may bring.
 const CRATES_OF_CARDS: [&str; 2] = ["wgpu", "naga"];
 
@@ -28,6 +31,7 @@ pub fn show(figures: &mut Figures) -> Result<()> {
         figures.says("not measured: accuracy and speed, as there is no adapter");
         return Ok(());
     }
+    kernels(figures)?;
     program.show(figures, &["accuracy"])?;
     if adapter["is_card"] == true {
         return program.show(figures, &["speed"]);
@@ -81,5 +85,18 @@ fn size_and_build_time(figures: &mut Figures) -> Result<()> {
         figures.plain(&format!("MB, {words}"), &format!("{:.2}", bytes as f64 / 1e6));
         figures.plain(&format!("seconds to build, {words}"), &format!("{seconds:.0}"));
     }
+    Ok(())
+}
+
+/// What the tests of kernels tell, which refuse any answer that is neither near the processor's nor as good.
+fn kernels(figures: &mut Figures) -> Result<()> {
+    figures.group("random and degenerate constraints on the card and on the processor: differences, in diameters");
+    let text = shell::output(&mut super::test_command(&["--features", "gpu", "--test", "gpu"]))?;
+    let mut lines: Vec<&str> = text.lines().filter_map(|line| line.split("kernel ").nth(1)).collect();
+    lines.sort_unstable();
+    lines.iter().for_each(|line| figures.says(line));
+    let mut names: Vec<&str> = lines.iter().filter_map(|line| line.split(':').next()).collect();
+    names.dedup();
+    figures.exactly("types with kernels whose tests pass", names.len(), KERNELS);
     Ok(())
 }

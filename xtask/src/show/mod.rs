@@ -10,9 +10,13 @@ mod ruled;
 mod snakes;
 mod speed;
 
+use std::process::Command;
+
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use serde_json::Value;
+
+use crate::shell;
 
 /// What can be shown.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -136,4 +140,11 @@ pub fn number(value: f64) -> String {
         1e-3..1e5 => format!("{value:.4}"),
         _ => format!("{value:.1e}"),
     }
+}
+
+/// Tests of the library in release, with what they print.
+fn test_command(which: &[&str]) -> Command {
+    let mut command = shell::cargo();
+    command.args(["test", "--quiet", "--release", "--package", "shapeop"]).args(which).args(["--", "--nocapture"]);
+    command
 }

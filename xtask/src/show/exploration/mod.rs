@@ -96,9 +96,7 @@ fn contradictions(figures: &mut Figures) -> Result<()> {
 
 /// What a test of the library prints, passed or not: the figures say what is short.
 fn test_output(which: &[&str]) -> Result<String> {
-    let mut command = shell::cargo();
-    command.args(["test", "--quiet", "--release", "--package", "shapeop"]).args(which).args(["--", "--nocapture"]);
-    let output = command.output().context("Cargo could not be started")?;
+    let output = super::test_command(which).output().context("Cargo could not be started")?;
     if !output.status.success() {
         eprintln!("{}", String::from_utf8_lossy(&output.stderr));
     }
