@@ -22,8 +22,8 @@ use shapeop::capi::*;
 
 use calls::{Array, Call, MOST_POINTS, Op, Options, call};
 
-/// Sequences of the ordinary run: a few seconds.
-const SEQUENCES: u32 = 10_000;
+/// Sequences of the ordinary run.
+const SEQUENCES: u32 = 6_000;
 
 /// Calls of a sequence at most.
 const LONGEST_SEQUENCE: usize = 60;

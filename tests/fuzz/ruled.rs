@@ -15,7 +15,7 @@ use super::last_error;
 use super::objects::{Done, carry_out, check, run_sequences};
 
 /// Sequences of the ordinary run.
-const SEQUENCES: u32 = 1_000;
+const SEQUENCES: u32 = 400;
 
 /// Points along a side of the mesh.
 const SIDE: c_int = 8;

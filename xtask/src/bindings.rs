@@ -49,6 +49,21 @@ const CSHARP_TESTS: Step = &[
 
 /// The tests of each binding beside the three problems.
 pub const SUITES: [Suite; 18] = [
+    // As long as all others together: first, so that nothing waits for it.
+    Suite {
+        name: "Grasshopper files",
+        environment: &[("SHAPEOP_LIBRARY", "{library}"), ("SHAPEOP_GH_FILES", "{ghfiles}")],
+        steps: &[&[
+            "{ghpython}",
+            "-m",
+            "pytest",
+            "-q",
+            "-rs",
+            "-p",
+            "no:cacheprovider",
+            "{source}/ghpython/packaging/tests",
+        ]],
+    },
     Suite {
         name: "format, lints and types of the Python sources",
         environment: &[],
@@ -106,20 +121,6 @@ pub const SUITES: [Suite; 18] = [
             ],
             &["{python}", "{source}/tests/csharp/package.py", "{work}", "{work}/Tests.exe"],
         ],
-    },
-    Suite {
-        name: "Grasshopper files",
-        environment: &[("SHAPEOP_LIBRARY", "{library}"), ("SHAPEOP_GH_FILES", "{ghfiles}")],
-        steps: &[&[
-            "{ghpython}",
-            "-m",
-            "pytest",
-            "-q",
-            "-rs",
-            "-p",
-            "no:cacheprovider",
-            "{source}/ghpython/packaging/tests",
-        ]],
     },
     Suite {
         name: "Grasshopper components under CPython 3",

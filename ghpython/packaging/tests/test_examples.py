@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
 from pathlib import Path
@@ -33,6 +34,12 @@ from canvas import Canvas  # noqa: E402
 RELATIVE_TOLERANCE = 1e-9
 
 
+@functools.cache
+def expected_of(spec: Path) -> list:
+    """The models of a spec with their points, solved once for all hosts."""
+    return [(model, solve.solve(model)) for model in paper.read_spec(spec)["models"]]
+
+
 @pytest.mark.parametrize("host", HOSTS, ids=lambda h: h.name)
 def test_committed_definitions_are_those_that_are_built(host) -> None:
     built = build.definitions(components.load_all(build.COMPONENTS), host)
@@ -50,8 +57,7 @@ def test_a_definition_solved_outside_rhino_gives_the_points_of_its_spec(host, sp
     canvas = Canvas(root)
     canvas.solve()
     assert canvas.errors() == []
-    for model in paper.read_spec(spec)["models"]:
-        expected = solve.solve(model)
+    for model, expected in expected_of(spec):
         diagonal = float(((expected.points.max(axis=0) - expected.points.min(axis=0)) ** 2).sum() ** 0.5)
         worst, compared = 0.0, 0
         for stage, points in (live if paper.is_live(model) else static)(canvas, model):
