@@ -91,7 +91,7 @@ fn size_and_build_time(figures: &mut Figures) -> Result<()> {
 /// What the tests of kernels tell, which refuse any answer that is neither near the processor's nor as good.
 fn kernels(figures: &mut Figures) -> Result<()> {
     figures.group("random and degenerate constraints on the card and on the processor: differences, in diameters");
-    let text = shell::output(&mut super::test_command(&["--features", "gpu", "--test", "gpu"]))?;
+    let text = shell::output(&mut super::test_command(&["--features", "shapeop/gpu", "--test", "gpu"]))?;
     let mut lines: Vec<&str> = text.lines().filter_map(|line| line.split("kernel ").nth(1)).collect();
     lines.sort_unstable();
     lines.iter().for_each(|line| figures.says(line));

@@ -145,6 +145,7 @@ pub fn number(value: f64) -> String {
 /// Tests of the library in release, with what they print.
 fn test_command(which: &[&str]) -> Command {
     let mut command = shell::cargo();
-    command.args(["test", "--quiet", "--release", "--package", "shapeop"]).args(which).args(["--", "--nocapture"]);
+    // With the workspace's selection of packages, as programs that measure are built.
+    command.args(["test", "--quiet", "--release", "--workspace"]).args(which).args(["--", "--nocapture"]);
     command
 }
