@@ -15,7 +15,7 @@
 use bytemuck::{Pod, Zeroable};
 use wgpu::Buffer;
 
-use super::card::{Access, Card, GROUP, Run};
+use super::card::{Access, Card, GROUP, Run, THREADS};
 use super::internal;
 use crate::error::Result;
 use crate::linalg::rows::SparseRows;
@@ -292,7 +292,7 @@ impl Sliced {
         let mut accesses = vec![Access::Uniform];
         accesses.resize(1 + own_count, Access::Read);
         accesses.extend(finish.accesses);
-        let kernel = card.kernel(&name, &[&lanes, sums, joined, SLICED, terms, finish.text], &accesses)?;
+        let kernel = card.kernel(&name, &[&lanes, sums, joined, SLICED, terms, finish.text, THREADS], &accesses)?;
         let run = |page: &Page| {
             let (keep, factor) = (keep as f32, factor as f32);
             let numbers = card.uniform(&Numbers { first: page.first as u32, end: page.end as u32, keep, factor });

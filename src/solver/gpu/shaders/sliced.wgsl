@@ -22,13 +22,7 @@ struct Page {
 @group(0) @binding(3) var<storage, read> values: array<Value>;
 @group(0) @binding(4) var<storage, read> x: array<vec4f>;
 
-@compute @workgroup_size(64)
-fn main(
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(num_workgroups) groups: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let slice = group.y * groups.x + group.x;
+fn work(_thread: u32, slice: u32, local: u32) {
     if page.first + slice * ROWS >= page.end {
         return;
     }
