@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread;
 
 use anyhow::Result;
 
@@ -227,13 +228,20 @@ pub const SUITES: [Suite; 18] = [
     },
 ];
 
-/// Lays out the library and makes the Python environment; returns where they are.
+/// Lays out the library and makes the Python environments; returns where they are.
 pub fn set_up(profile: &str) -> Result<Places> {
     let root = shell::root();
     let mut places = Places::default();
     let folder = root.join("target/dist");
     dist::run(&folder, profile, false)?;
-    let python = environment(&root.join("target/python"), &REQUIREMENTS)?;
+    // Side by side: each waits for its downloads.
+    let (python, grasshopper, peers) = thread::scope(|scope| {
+        let python = scope.spawn(|| environment(&root.join("target/python"), &REQUIREMENTS));
+        let peers = scope.spawn(peers);
+        let grasshopper = environment(&root.join("target/ghpython"), &GRASSHOPPER_REQUIREMENTS);
+        (shell::joined(python), grasshopper, shell::joined(peers))
+    });
+    let (python, grasshopper) = (python?, grasshopper?);
     // The wheel with the library that the other tests use.
     let mut install = Command::new(&python);
     install.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--force-reinstall", "--no-deps"]);
@@ -242,11 +250,10 @@ pub fn set_up(profile: &str) -> Result<Places> {
     places.set("library", dist::library(&folder));
     places.set("dist", folder);
     places.set("source", &root);
-    let grasshopper = environment(&root.join("target/ghpython"), &GRASSHOPPER_REQUIREMENTS)?;
     places.set("ghfiles", public_files(&grasshopper, root.join("target/ghfiles"))?);
     places.set("ghpython", grasshopper);
     places.set("python", python);
-    if let Some(python) = peers()? {
+    if let Some(python) = peers? {
         places.set("peers", python);
     }
     // Those of Rhino 7 and Rhino 8.

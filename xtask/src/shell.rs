@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread::ScopedJoinHandle;
 
 use anyhow::{Context, Result, bail};
 
@@ -59,4 +60,9 @@ pub fn can_start(program: &str) -> bool {
         let file = folder.join(program);
         file.is_file() || file.with_extension("exe").is_file() || file.with_extension("cmd").is_file()
     })
+}
+
+/// What a thread ends with.
+pub fn joined<T>(thread: ScopedJoinHandle<'_, Result<T>>) -> Result<T> {
+    thread.join().unwrap_or_else(|_| bail!("a thread panicked"))
 }

@@ -65,9 +65,7 @@ fn run_suites(places: &Places, left_out: &Path) -> Result<Vec<String>> {
     thread::scope(|scope| {
         let count = thread::available_parallelism().map_or(1, NonZero::get);
         let workers: Vec<_> = (0..count).map(|_| scope.spawn(run_some)).collect();
-        let ends =
-            workers.into_iter().map(|worker| worker.join().unwrap_or_else(|_| bail!("a suite's thread panicked")));
-        ends.collect::<Result<Vec<_>>>().map(|lines| lines.concat())
+        workers.into_iter().map(shell::joined).collect::<Result<Vec<_>>>().map(|lines| lines.concat())
     })
 }
 
