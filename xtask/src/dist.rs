@@ -65,9 +65,7 @@ pub fn run(folder: &Path, profile: &str, has_gpu: bool) -> Result<()> {
     let mut build = shell::cargo();
     build.args(["build", "--quiet", "--workspace", "--lib", "--profile", profile, "--features", features]);
     shell::run(&mut build)?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| shell::root().join("target"), Into::into);
-    // The profiles dev and test build into `debug`.
-    let built = target.join(if profile == "dev" || profile == "test" { "debug" } else { profile });
+    let built = shell::built(profile);
     let library = built.join(LIBRARY);
     let root = shell::root();
     copy(&library, &folder.join("lib").join(LIBRARY))?;

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
@@ -158,9 +159,11 @@ pub fn run(places: &Places, profile: &str) -> Result<Vec<Row>> {
     let mesh = shell::root().join("examples/meshes/botanic-garden-bubble-0.obj");
     let reference = shell::root().join("target/suites/Rust");
     fs::create_dir_all(&reference)?;
-    let mut rust = shell::cargo();
-    rust.args(["run", "--quiet", "--profile", profile, "--example", "three_problems", "--"]).args([&mesh, &reference]);
-    shell::run(&mut rust)?;
+    // With the workspace's selection of packages, so that what the other tests built is used.
+    let mut build = shell::cargo();
+    shell::run(build.args(["build", "--quiet", "--workspace", "--profile", profile, "--example", "three_problems"]))?;
+    let program = shell::built(profile).join("examples/three_problems");
+    shell::run(Command::new(program).args([&mesh, &reference]))?;
     places.set("mesh", mesh);
 
     println!("\nThe largest difference to the Rust result, of the model's size:");

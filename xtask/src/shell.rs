@@ -18,6 +18,13 @@ pub fn cargo() -> Command {
     command
 }
 
+/// The folder that Cargo builds into with this profile.
+pub fn built(profile: &str) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into);
+    // The profiles dev and test build into `debug`.
+    target.join(if profile == "dev" || profile == "test" { "debug" } else { profile })
+}
+
 fn line(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
     words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
