@@ -75,10 +75,10 @@ fn unsafe_code_is_only_in_capi() {
     }
 }
 
-/// The crates of the workspace's libraries and programs with these features of this crate.
-fn crates_with(features: &str) -> Vec<String> {
+/// The crates inside what is selected.
+fn crates_of(selection: &[&str]) -> Vec<String> {
     let mut command = Command::new(env!("CARGO"));
-    command.args(["tree", "--locked", "--workspace", "--edges", "normal", "--prefix", "none", "--features", features]);
+    command.args(["tree", "--locked", "--edges", "normal", "--prefix", "none"]).args(selection);
     let output = command.current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
@@ -88,7 +88,7 @@ fn crates_with(features: &str) -> Vec<String> {
 #[test]
 fn only_the_feature_gpu_brings_crates_of_the_graphics_card() {
     let of_card = |features: &str| {
-        let mut crates = crates_with(features);
+        let mut crates = crates_of(&["--workspace", "--features", features]);
         assert!(crates.contains(&"faer".to_owned()), "{features}: the crates were not read");
         crates.retain(|name| name.starts_with("wgpu") || name.starts_with("naga") || name == "pollster");
         crates
@@ -97,6 +97,18 @@ fn only_the_feature_gpu_brings_crates_of_the_graphics_card() {
     assert_eq!(of_card("shapeop/schema"), [""; 0]);
     let with_feature = of_card("shapeop/gpu");
     assert!(["wgpu", "naga", "pollster"].iter().all(|name| with_feature.contains(&(*name).to_owned())));
+}
+
+#[test]
+fn no_crate_inside_the_default_library_is_built_unoptimised() {
+    let inside = crates_of(&["--package", "shapeop"]);
+    assert!(inside.contains(&"faer".to_owned()), "the crates were not read");
+    let manifest = include_str!("../Cargo.toml");
+    let unoptimised: Vec<&str> =
+        manifest.lines().filter_map(|line| line.strip_suffix(" = { opt-level = 0 }")).collect();
+    assert!(unoptimised.contains(&"naga"), "the profile was not read");
+    let both: Vec<&&str> = unoptimised.iter().filter(|name| inside.iter().any(|other| other == *name)).collect();
+    assert!(both.is_empty(), "{both:?}");
 }
 
 #[test]
