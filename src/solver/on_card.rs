@@ -408,6 +408,7 @@ impl Rounds {
 
 #[cfg(test)]
 mod tests {
+    use super::super::SolveOptions;
     use super::*;
 
     #[test]
@@ -426,5 +427,47 @@ mod tests {
         let refused = OnCard { refusal: Some("no card".to_owned()), ..OnCard::default() };
         assert!(!refused.is_next(Backend::Automatic));
         assert_eq!(refused.reason(Backend::Automatic), "no card");
+    }
+
+    #[test]
+    fn how_often_points_are_read_back_changes_no_bit() {
+        if crate::solver::gpu::tests::card(0).is_none() {
+            return;
+        }
+        let n = 12;
+        let point = |k: u32| {
+            let (i, j) = (k % n, k / n);
+            DVec3::new(f64::from(i), f64::from(j), 0.3 * f64::from(k * 7 % 5))
+        };
+        let points: Vec<DVec3> = (0..n * n).map(point).collect();
+        let solved = |seconds_per_read_back: f64, tolerance: f64| {
+            let mut solver = Solver::new();
+            solver.set_points(&points).unwrap();
+            for k in (0..n * (n - 1)).filter(|k| k % n + 1 < n) {
+                solver.add_constraint("Plane", &[k, k + 1, k + n + 1, k + n], 1.0).unwrap();
+            }
+            for k in 0..n * n {
+                solver.add_constraint("Closeness", &[k], 0.05).unwrap();
+            }
+            solver.set_backend(Backend::Gpu).unwrap();
+            solver.init().unwrap();
+            solver.solve(1).unwrap();
+            solver.on_card.engine.as_mut().unwrap().seconds_per_read_back = seconds_per_read_back;
+            let options = SolveOptions { max_iterations: 500, tolerance, ..SolveOptions::default() };
+            let mut read_backs = 0;
+            let count = &mut |_: &Progress<'_>| {
+                read_backs += 1;
+                ControlFlow::Continue(())
+            };
+            let report = solver.solve_until(&options, count).unwrap();
+            assert!(report.gpu_iterations > 2, "{report:?}");
+            let of_card = report.gpu_iterations;
+            ((report.iterations, of_card, report.energy_after.to_bits(), solver.points().to_vec()), read_backs)
+        };
+        for tolerance in [1e-4, 1e-6, 1e-9] {
+            let ((often, many), (seldom, few)) = (solved(0.0, tolerance), solved(f64::INFINITY, tolerance));
+            assert!(often == seldom, "{tolerance}: {:?} and {:?}", (often.0, often.1), (seldom.0, seldom.1));
+            assert!(many > few, "{tolerance}: {many} and {few} read-backs");
+        }
     }
 }

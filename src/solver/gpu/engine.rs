@@ -87,6 +87,8 @@ pub(in crate::solver) struct Engine {
     /// Steps of conjugate gradients in each linear solve.
     steps: u32,
     seconds_per_iteration: f64,
+    /// Seconds between read-backs, about.
+    pub(in crate::solver) seconds_per_read_back: f64,
     base: Vec<Four>,
     /// The points of the last upload or read-back.
     pub(in crate::solver) current: Vec<DVec3>,
@@ -121,7 +123,7 @@ pub(in crate::solver) struct ReadBack {
     /// Iterations since the one before, and evaluations.
     pub(in crate::solver) iterations: u32,
     pub(in crate::solver) evaluations: u32,
-    /// True at a turn, and where accelerated iterations ended early: then the processor may go on.
+    /// True at a turn, and where accelerated iterations have come to their end: then the processor may go on.
     pub(in crate::solver) is_turn: bool,
     /// True where acceleration finds nothing any more: energies differ by less than single precision tells.
     pub(in crate::solver) is_stuck: bool,
@@ -224,6 +226,7 @@ impl Engine {
             group_count,
             steps: FIRST_STEPS,
             seconds_per_iteration: 0.0,
+            seconds_per_read_back: SECONDS,
             base: Vec::new(),
             current: Vec::new(),
             constant_energy: 0.0,
@@ -288,7 +291,7 @@ impl Engine {
         if self.has_host() || self.made == 0 {
             return 1;
         }
-        let in_time = if self.is_warm() { (SECONDS / self.seconds_per_iteration) as u32 } else { 1 };
+        let in_time = if self.is_warm() { (self.seconds_per_read_back / self.seconds_per_iteration) as u32 } else { 1 };
         in_time.clamp(1, TURN - self.made % TURN)
     }
 
@@ -339,11 +342,11 @@ impl Engine {
         if !self.is_projected {
             self.project(now);
         }
-        let [iterations, evaluations] = match chooser {
+        let (iterations, evaluations, has_ended) = match chooser {
             Some(chooser) => self.accelerated_iterations(count, chooser, near)?,
             None => {
                 self.plain_iterations(count);
-                [count; 2]
+                (count, count, false)
             }
         };
         self.card.wait()?;
@@ -361,7 +364,7 @@ impl Engine {
         }
         self.transfer_seconds += started.elapsed().as_secs_f64();
         let is_stuck = self.plain_in_a_row >= MOST_PLAIN;
-        Ok(ReadBack { iterations, evaluations, energy, largest_move, is_turn: is_turn || iterations < count, is_stuck })
+        Ok(ReadBack { iterations, evaluations, energy, largest_move, is_turn: is_turn || has_ended, is_stuck })
     }
 
     /// Solves for the change of the points.
@@ -382,24 +385,23 @@ impl Engine {
         self.energy = None;
     }
 
-    /// Returns the numbers of iterations and of evaluations.
-    fn accelerated_iterations(&mut self, count: u32, chooser: &mut Chooser, near: f64) -> Result<[u32; 2]> {
+    /// Returns the numbers of iterations and of evaluations, and true if the last iteration is one to end at, be it the last of
+    /// `count` or not: how many were asked for is a matter of the clock.
+    fn accelerated_iterations(&mut self, count: u32, chooser: &mut Chooser, near: f64) -> Result<(u32, u32, bool)> {
         let mut energy = match self.energy {
             Some(energy) => energy,
             None => self.read_trial()?.energy,
         };
-        let (mut iterations, mut evaluations) = (0, 0);
-        while iterations < count {
+        let (mut iterations, mut evaluations, mut has_ended) = (0, 0, false);
+        while iterations < count && !has_ended {
             let (found, tried) = self.accelerated_iteration(energy, chooser)?;
             energy = found.energy;
             evaluations += tried;
             iterations += 1;
-            if found.largest_move < near || self.plain_in_a_row >= MOST_PLAIN {
-                break;
-            }
+            has_ended = found.largest_move < near || self.plain_in_a_row >= MOST_PLAIN;
         }
         self.energy = Some(energy);
-        Ok([iterations, evaluations])
+        Ok((iterations, evaluations, has_ended))
     }
 
     /// One iteration from points of `energy`; returns the number of evaluations, too.
